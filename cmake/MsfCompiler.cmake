@@ -1,0 +1,16 @@
+# Compiler flags shared by every target: `msf_compiler` carries them.
+add_library(msf_compiler INTERFACE)
+target_compile_options(msf_compiler INTERFACE -Wall -Wextra -Wpedantic)
+# -ffp-contract=off would cost speed; determinism only needs the same binary to repeat itself.
+# Debian's Eigen and Ceres agree on 32-byte alignment for x86-64-v3 as long as every room uses the same MSF_ARCH.
+if(MSF_ARCH)
+  add_compile_options(-march=${MSF_ARCH})
+endif()
+if(MSF_SANITIZE)
+  add_compile_options(-fsanitize=${MSF_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${MSF_SANITIZE})
+endif()
+find_program(MSF_CCACHE ccache)
+if(MSF_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${MSF_CCACHE})
+endif()

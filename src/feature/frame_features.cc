@@ -1,0 +1,69 @@
+#include "feature/frame_features.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace msf {
+namespace {
+
+// The rectangle of undistorted coordinates that the image covers.
+void UndistortedBounds(const Camera& camera, Eigen::Vector2f& lower, Eigen::Vector2f& upper) {
+  lower = Eigen::Vector2f(0, 0);
+  upper = Eigen::Vector2f(camera.width, camera.height);
+  for (const double u : {0.0, camera.width / 2.0, double(camera.width)}) {
+    for (const double v : {0.0, camera.height / 2.0, double(camera.height)}) {
+      const Eigen::Vector2f corner = camera.Undistort({u, v}).cast<float>();
+      lower = lower.cwiseMin(corner);
+      upper = upper.cwiseMax(corner);
+    }
+  }
+}
+
+}  // namespace
+
+void FrameFeatures::BuildGrid(const Camera& camera) {
+  Eigen::Vector2f lower, upper;
+  UndistortedBounds(camera, lower, upper);
+  grid_origin_px_ = lower;
+  cells_per_px_ = Eigen::Vector2f(kGridColumns, kGridRows).cwiseQuotient(upper - lower);
+
+  // Counting sort by cell keeps the points of a row of cells together in memory.
+  std::vector<int32_t> cell_of(size());
+  cell_begin_.assign(kGridColumns * kGridRows + 1, 0);
+  for (int i = 0; i < size(); ++i) {
+    const Eigen::Vector2f cell = (uv_px[i] - grid_origin_px_).cwiseProduct(cells_per_px_);
+    const int column = std::clamp(static_cast<int>(cell.x()), 0, kGridColumns - 1);
+    const int row = std::clamp(static_cast<int>(cell.y()), 0, kGridRows - 1);
+    cell_of[i] = row * kGridColumns + column;
+    ++cell_begin_[cell_of[i] + 1];
+  }
+  for (size_t cell = 1; cell < cell_begin_.size(); ++cell) cell_begin_[cell] += cell_begin_[cell - 1];
+  cell_points_.resize(size());
+  std::vector<int32_t> next(cell_begin_.begin(), cell_begin_.end() - 1);
+  for (int i = 0; i < size(); ++i) cell_points_[next[cell_of[i]]++] = i;
+}
+
+void FrameFeatures::FindInArea(const Eigen::Vector2d& centre_px, double radius_px, int min_level, int max_level,
+                               std::vector<int>& found) const {
+  if (cell_points_.empty()) return;
+  const Eigen::Vector2f centre = centre_px.cast<float>();
+  const float radius = static_cast<float>(radius_px);
+  const Eigen::Vector2f reach = Eigen::Vector2f::Constant(radius);
+  const Eigen::Vector2f first = (centre - reach - grid_origin_px_).cwiseProduct(cells_per_px_);
+  const Eigen::Vector2f last = (centre + reach - grid_origin_px_).cwiseProduct(cells_per_px_);
+  if (!(first.x() < kGridColumns && first.y() < kGridRows && last.x() >= 0 && last.y() >= 0)) return;
+  const int first_column = std::max(0, static_cast<int>(first.x())), first_row = std::max(0, static_cast<int>(first.y()));
+  const int last_column = std::min(kGridColumns - 1, static_cast<int>(last.x()));
+  const int last_row = std::min(kGridRows - 1, static_cast<int>(last.y()));
+  for (int row = first_row; row <= last_row; ++row) {
+    const int32_t begin = cell_begin_[row * kGridColumns + first_column];
+    const int32_t end = cell_begin_[row * kGridColumns + last_column + 1];
+    for (int32_t k = begin; k < end; ++k) {
+      const int i = cell_points_[k];
+      if (level[i] < min_level || level[i] > max_level) continue;
+      if (std::abs(uv_px[i].x() - centre.x()) < radius && std::abs(uv_px[i].y() - centre.y()) < radius) found.push_back(i);
+    }
+  }
+}
+
+}  // namespace msf
