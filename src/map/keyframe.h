@@ -1,0 +1,29 @@
+// A frame that the map keeps.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "feature/bag_of_words.h"
+#include "feature/frame_features.h"
+#include "geometry/rigid3d.h"
+#include "util/strong_id.h"
+
+namespace msf {
+
+struct KeyFrame {
+  KeyFrameId id;
+  MapId map_id;
+  FrameId frame_id;
+  double time_s = 0;
+  // What the camera saw: never changes once the keyframe is made.
+  std::shared_ptr<const FrameFeatures> features;
+  std::shared_ptr<const BagOfWords> words;
+
+  Rigid3d T_cw;
+  std::vector<MapPointId> points;  // per feature, invalid = none
+
+  Eigen::Vector3d CentreInWorld() const { return T_cw.Inverse().translation(); }
+};
+
+}  // namespace msf

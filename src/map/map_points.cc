@@ -1,0 +1,153 @@
+// The half of Map that deals with points.
+#include <algorithm>
+#include <climits>
+
+#include "map/map.h"
+#include "util/check.h"
+
+namespace msf {
+
+MapPointId Map::AddPoint(const Eigen::Vector3d& p_w, KeyFrameId first_keyframe, int feature,
+                         const std::array<uint8_t, 3>& color_bgr) {
+  ++version_;
+  const KeyFrame& keyframe = MutableKeyFrame(first_keyframe);
+  auto point = std::make_unique<MapPoint>();
+  point->id = MapPointId(static_cast<int64_t>(points_.size()));
+  point->map_id = keyframe.map_id;
+  point->p_w = p_w;
+  point->first_keyframe = point->reference = first_keyframe;
+  point->descriptor = keyframe.features->descriptors[feature];
+  point->static_weight = keyframe.features->static_weight[feature];
+  point->color_bgr = color_bgr;
+  const MapPointId id = point->id;
+  points_.push_back(std::move(point));
+  replaced_by_.emplace_back();
+  MSF_CHECK(AddObservation(id, first_keyframe, feature), "the feature of a new point is taken");
+  UpdateNormalAndRange(id);
+  return id;
+}
+
+const MapPoint* Map::FindPoint(MapPointId id) const {
+  const bool known = id.valid() && id.value() < static_cast<int64_t>(points_.size());
+  return known ? points_[id.value()].get() : nullptr;
+}
+
+MapPoint& Map::MutablePoint(MapPointId id) {
+  MSF_CHECK(FindPoint(id) != nullptr, "this point is not in the map");
+  return *points_[id.value()];
+}
+
+std::vector<MapPointId> Map::PointIds(MapId map) const {
+  std::vector<MapPointId> ids;
+  for (const auto& point : points_) {
+    if (point && point->map_id == map) ids.push_back(point->id);
+  }
+  return ids;
+}
+
+int Map::NumPoints(MapId map) const {
+  return static_cast<int>(
+      std::count_if(points_.begin(), points_.end(), [&](const auto& point) { return point && point->map_id == map; }));
+}
+
+void Map::SetPosition(MapPointId id, const Eigen::Vector3d& p_w) {
+  ++version_;
+  MutablePoint(id).p_w = p_w;
+}
+
+void Map::SetStaticWeight(MapPointId id, float weight) { MutablePoint(id).static_weight = weight; }
+
+bool Map::AddObservation(MapPointId id, KeyFrameId keyframe_id, int feature) {
+  MapPoint& point = MutablePoint(id);
+  KeyFrame& keyframe = MutableKeyFrame(keyframe_id);
+  if (keyframe.points[feature].valid()) return false;
+  const auto place = std::lower_bound(
+      point.observations.begin(), point.observations.end(), keyframe_id,
+      [](const Observation& observation, KeyFrameId other) { return observation.keyframe < other; });
+  if (place != point.observations.end() && place->keyframe == keyframe_id) return false;
+  ++version_;
+  keyframe.points[feature] = id;
+  point.observations.insert(place, {keyframe_id, feature});
+  return true;
+}
+
+void Map::RemoveObservation(MapPointId id, KeyFrameId keyframe_id) {
+  MapPoint& point = MutablePoint(id);
+  const auto place = std::find_if(point.observations.begin(), point.observations.end(),
+                                  [&](const Observation& observation) { return observation.keyframe == keyframe_id; });
+  if (place == point.observations.end()) return;
+  ++version_;
+  MutableKeyFrame(keyframe_id).points[place->feature] = MapPointId();
+  point.observations.erase(place);
+  if (point.observations.size() < 2) {
+    RemovePoint(id);
+    return;
+  }
+  if (point.reference == keyframe_id) point.reference = point.observations.front().keyframe;
+}
+
+void Map::RemovePoint(MapPointId id) {
+  ++version_;
+  for (const Observation& observation : MutablePoint(id).observations) {
+    MutableKeyFrame(observation.keyframe).points[observation.feature] = MapPointId();
+  }
+  points_[id.value()].reset();
+}
+
+void Map::ReplacePoint(MapPointId old_id, MapPointId new_id) {
+  MSF_CHECK(old_id != new_id, "a point cannot replace itself");
+  const MapPoint old_point = MutablePoint(old_id);
+  RemovePoint(old_id);
+  for (const Observation& observation : old_point.observations) {
+    AddObservation(new_id, observation.keyframe, observation.feature);
+  }
+  CountVisible(new_id, old_point.visible_count);
+  CountFound(new_id, old_point.found_count);
+  replaced_by_[old_id.value()] = new_id;
+  UpdateAppearance(new_id);
+}
+
+MapPointId Map::Resolve(MapPointId id) const {
+  while (id.valid() && !FindPoint(id)) id = replaced_by_[id.value()];
+  return id;
+}
+
+void Map::CountVisible(MapPointId id, int times) { MutablePoint(id).visible_count += times; }
+
+void Map::CountFound(MapPointId id, int times) { MutablePoint(id).found_count += times; }
+
+void Map::UpdateAppearance(MapPointId id) {
+  MapPoint& point = MutablePoint(id);
+  std::vector<Descriptor> descriptors;
+  for (const Observation& observation : point.observations) {
+    descriptors.push_back(FindKeyFrame(observation.keyframe)->features->descriptors[observation.feature]);
+  }
+  // The descriptor with the least median distance to the others stands for the point.
+  int least_median = INT_MAX;
+  std::vector<int> distances(descriptors.size());
+  for (const Descriptor& candidate : descriptors) {
+    std::transform(descriptors.begin(), descriptors.end(), distances.begin(),
+                   [&](const Descriptor& other) { return DescriptorDistance(candidate, other); });
+    const auto middle = distances.begin() + (distances.size() - 1) / 2;
+    std::nth_element(distances.begin(), middle, distances.end());
+    if (*middle >= least_median) continue;
+    least_median = *middle;
+    point.descriptor = candidate;
+  }
+}
+
+void Map::UpdateNormalAndRange(MapPointId id) {
+  MapPoint& point = MutablePoint(id);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Observation& observation : point.observations) {
+    sum += (point.p_w - FindKeyFrame(observation.keyframe)->CentreInWorld()).normalized();
+  }
+  const KeyFrame& reference = *FindKeyFrame(point.reference);
+  const int level = reference.features->level[point.FeatureIn(point.reference)];
+  const double distance_m = (point.p_w - reference.CentreInWorld()).norm();
+  point.normal = sum.normalized();
+  point.max_distance_m = distance_m * levels_.scale(level);
+  point.min_distance_m = point.max_distance_m / levels_.scale(levels_.size() - 1);
+}
+
+}  // namespace msf
