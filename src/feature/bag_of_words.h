@@ -1,4 +1,5 @@
-// An image as a bag of visual words: what place recognition compares and what narrows descriptor matching down.
+// An image as a bag of visual words: what place recognition compares and what narrows descriptor
+// matching down.
 #pragma once
 
 #include <cstdint>

@@ -37,22 +37,25 @@ void FrameFeatures::BuildGrid(const Camera& camera) {
     cell_of[i] = row * kGridColumns + column;
     ++cell_begin_[cell_of[i] + 1];
   }
-  for (size_t cell = 1; cell < cell_begin_.size(); ++cell) cell_begin_[cell] += cell_begin_[cell - 1];
+  for (size_t cell = 1; cell < cell_begin_.size(); ++cell)
+    cell_begin_[cell] += cell_begin_[cell - 1];
   cell_points_.resize(size());
   std::vector<int32_t> next(cell_begin_.begin(), cell_begin_.end() - 1);
   for (int i = 0; i < size(); ++i) cell_points_[next[cell_of[i]]++] = i;
 }
 
-void FrameFeatures::FindInArea(const Eigen::Vector2d& centre_px, double radius_px, int min_level, int max_level,
-                               std::vector<int>& found) const {
+void FrameFeatures::FindInArea(const Eigen::Vector2d& centre_px, double radius_px, int min_level,
+                               int max_level, std::vector<int>& found) const {
   if (cell_points_.empty()) return;
   const Eigen::Vector2f centre = centre_px.cast<float>();
   const float radius = static_cast<float>(radius_px);
   const Eigen::Vector2f reach = Eigen::Vector2f::Constant(radius);
   const Eigen::Vector2f first = (centre - reach - grid_origin_px_).cwiseProduct(cells_per_px_);
   const Eigen::Vector2f last = (centre + reach - grid_origin_px_).cwiseProduct(cells_per_px_);
-  if (!(first.x() < kGridColumns && first.y() < kGridRows && last.x() >= 0 && last.y() >= 0)) return;
-  const int first_column = std::max(0, static_cast<int>(first.x())), first_row = std::max(0, static_cast<int>(first.y()));
+  if (!(first.x() < kGridColumns && first.y() < kGridRows && last.x() >= 0 && last.y() >= 0))
+    return;
+  const int first_column = std::max(0, static_cast<int>(first.x())),
+            first_row = std::max(0, static_cast<int>(first.y()));
   const int last_column = std::min(kGridColumns - 1, static_cast<int>(last.x()));
   const int last_row = std::min(kGridRows - 1, static_cast<int>(last.y()));
   for (int row = first_row; row <= last_row; ++row) {
@@ -61,7 +64,9 @@ void FrameFeatures::FindInArea(const Eigen::Vector2d& centre_px, double radius_p
     for (int32_t k = begin; k < end; ++k) {
       const int i = cell_points_[k];
       if (level[i] < min_level || level[i] > max_level) continue;
-      if (std::abs(uv_px[i].x() - centre.x()) < radius && std::abs(uv_px[i].y() - centre.y()) < radius) found.push_back(i);
+      if (std::abs(uv_px[i].x() - centre.x()) < radius &&
+          std::abs(uv_px[i].y() - centre.y()) < radius)
+        found.push_back(i);
     }
   }
 }

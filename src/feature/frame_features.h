@@ -1,10 +1,9 @@
 // The points of one image: positions, depths, descriptors and a grid that finds them by place.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "feature/descriptor.h"
 #include "sensor/camera.h"
@@ -19,7 +18,8 @@ struct FrameFeatures {
   std::vector<float> u_right_px;          // virtual stereo coordinate u - bf / depth; < 0 = none
   std::vector<float> angle_rad;           // orientation of the patch
   std::vector<uint8_t> level;             // pyramid level
-  std::vector<float> static_weight;       // probability that the point belongs to the static world, [0, 1]
+  std::vector<float>
+      static_weight;  // probability that the point belongs to the static world, [0, 1]
   std::vector<Descriptor> descriptors;
 
   int size() const { return static_cast<int>(uv_px.size()); }
@@ -30,7 +30,8 @@ struct FrameFeatures {
 
   // Sorts the points into the grid; to be called once the arrays are filled.
   void BuildGrid(const Camera& camera);
-  // Appends the points whose undistorted position lies within radius_px (a square) and whose level is in [min_level, max_level].
+  // Appends the points whose undistorted position lies within radius_px (a square) and whose level
+  // is in [min_level, max_level].
   void FindInArea(const Eigen::Vector2d& uv_px, double radius_px, int min_level, int max_level,
                   std::vector<int>& found) const;
 
@@ -39,7 +40,8 @@ struct FrameFeatures {
   static constexpr int kGridRows = 48;
   Eigen::Vector2f grid_origin_px_ = Eigen::Vector2f::Zero();
   Eigen::Vector2f cells_per_px_ = Eigen::Vector2f::Zero();
-  std::vector<int32_t> cell_begin_;    // kGridColumns * kGridRows + 1 offsets into cell_points_, row by row
+  std::vector<int32_t>
+      cell_begin_;  // kGridColumns * kGridRows + 1 offsets into cell_points_, row by row
   std::vector<int32_t> cell_points_;
 };
 

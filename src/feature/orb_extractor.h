@@ -1,11 +1,13 @@
 // ORB points of an image (Rublee et al., ICCV 2011) with an even distribution over the picture.
 #pragma once
 
+#include <memory>
 #include <opencv2/core/mat.hpp>
 
 #include "feature/frame_features.h"
 #include "feature/scale_levels.h"
 #include "sensor/rgbd_frame.h"
+#include "util/status.h"
 
 namespace msf {
 
@@ -16,6 +18,7 @@ struct OrbOptions {
   int fast_threshold = 20;
   int min_fast_threshold = 7;
   int cell_size_px = 35;
+  bool subpixel = false;
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
@@ -23,8 +26,10 @@ struct OrbOptions {
     visit("num_levels", num_levels, "pyramid levels");
     visit("scale_factor", scale_factor, "shrink from level to level");
     visit("fast_threshold", fast_threshold, "FAST contrast, grey values");
-    visit("min_fast_threshold", min_fast_threshold, "FAST contrast in cells where the first finds nothing");
+    visit("min_fast_threshold", min_fast_threshold,
+          "FAST contrast in cells where the first finds nothing");
     visit("cell_size_px", cell_size_px, "cell of the FAST search, px");
+    visit("subpixel", subpixel, "locate corners to fractions of a pixel");
   }
   Status Check() const;
 };
@@ -35,7 +40,8 @@ class OrbExtractor {
   explicit OrbExtractor(const OrbOptions& options);
   ~OrbExtractor();
 
-  // The points of a frame with undistorted positions, depth, virtual stereo, weight 1, and the grid built.
+  // The points of a frame with undistorted positions, depth, virtual stereo, weight 1, and the grid
+  // built.
   FrameFeatures Extract(const RgbdFrame& frame);
   // The same with `num_features` in place of the option (more where much of the image is masked).
   FrameFeatures Extract(const RgbdFrame& frame, int num_features);
@@ -44,9 +50,16 @@ class OrbExtractor {
 
  private:
   struct Buffers;
+
+  // Detects and describes the points of one pyramid level and appends them.
+  void ExtractLevel(int level, int quota, FrameFeatures& features);
+
   OrbOptions options_;
   ScaleLevels levels_;
   std::unique_ptr<Buffers> buffers_;
 };
+
+// Number of points per level, proportional to (1 / factor)^level, adding up to `num_features`.
+std::vector<int> LevelQuotas(const ScaleLevels& levels, int num_features);
 
 }  // namespace msf

@@ -19,7 +19,8 @@ class ScaleLevels {
   double scale(int level) const { return scales_[level]; }
   // Variance of a point's position found at this level, px^2 (1 at level 0).
   double sigma2(int level) const { return scales_[level] * scales_[level]; }
-  // The level at which a point of the given ratio max_distance / distance looks as it did when found.
+  // The level at which a point of the given ratio max_distance / distance looks as it did when
+  // found.
   int Predict(double distance_ratio) const {
     const int level = static_cast<int>(std::ceil(std::log(distance_ratio) / std::log(factor_)));
     return std::clamp(level, 0, size() - 1);

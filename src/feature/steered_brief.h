@@ -1,0 +1,19 @@
+// Orientation and descriptor of a point (Rublee et al., ICCV 2011).
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+
+#include "feature/descriptor.h"
+
+namespace msf {
+
+// Direction, in [-pi, pi], from the pixel (x, y) to the centroid of brightness over the disc of
+// kPatchRadiusPx around it. The disc must lie inside the image.
+float PatchOrientation(const cv::Mat& image, int x, int y);
+
+// The descriptor of the pixel (x, y) of a smoothed image: the pattern turned by the angle. The disc
+// must lie inside.
+Descriptor DescribePatch(const cv::Mat& smoothed, int x, int y, float angle_rad);
+
+}  // namespace msf
