@@ -1,0 +1,177 @@
+#include "io/png_unfilter.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+namespace msf {
+namespace {
+
+enum Filter : uint8_t { kNone = 0, kSub = 1, kUp = 2, kAverage = 3, kPaeth = 4 };
+
+// The prediction from the left, upper and upper left bytes: whichever is nearest to left + up - up_left.
+uint8_t PredictPaeth(int left, int up, int up_left) {
+  const int to_left = std::abs(up - up_left);
+  const int to_up = std::abs(left - up_left);
+  const int to_up_left = std::abs(left + up - 2 * up_left);
+  if (to_left <= to_up && to_left <= to_up_left) return static_cast<uint8_t>(left);
+  return static_cast<uint8_t>(to_up <= to_up_left ? up : up_left);
+}
+
+// Undoes one row; `predict(left, up, up_left)` gives what the encoder subtracted.
+template <int N, typename Predict>
+void UnfilterRowWith(const uint8_t* row, const uint8_t* up, int width, uint8_t* out,
+                     Predict predict) {
+  for (int c = 0; c < N; ++c) {
+    out[c] = static_cast<uint8_t>(row[N - 1 - c] + predict(0, up[c], 0));
+  }
+  for (int x = N; x < width * N; x += N) {
+    for (int c = 0; c < N; ++c) {
+      const int i = x + c;
+      out[i] = static_cast<uint8_t>(row[x + N - 1 - c] + predict(out[i - N], up[i], up[i - N]));
+    }
+  }
+}
+
+template <int N>
+bool UnfilterRow(uint8_t filter, const uint8_t* row, const uint8_t* up, int width, uint8_t* out) {
+  switch (filter) {
+    case kNone:
+      UnfilterRowWith<N>(row, up, width, out, [](int, int, int) { return 0; });
+      return true;
+    case kSub:
+      UnfilterRowWith<N>(row, up, width, out, [](int left, int, int) { return left; });
+      return true;
+    case kUp:
+      UnfilterRowWith<N>(row, up, width, out, [](int, int above, int) { return above; });
+      return true;
+    case kAverage:
+      UnfilterRowWith<N>(row, up, width, out,
+                         [](int left, int above, int) { return (left + above) / 2; });
+      return true;
+    case kPaeth:
+      UnfilterRowWith<N>(row, up, width, out, PredictPaeth);
+      return true;
+    default:
+      return false;
+  }
+}
+
+// Undoes kWave successive Paeth rows at once. A pixel needs its left and upper neighbours, so row r runs r pixels behind row 0
+// and all rows advance together: each row is one group of four lanes. Encoders choose this filter for nearly every row of a
+// photograph, and one row alone is a chain of dependent operations that leaves the processor idle.
+constexpr int kWave = 4;
+using Bytes = uint8_t __attribute__((vector_size(4 * kWave)));
+using Lanes = int16_t __attribute__((vector_size(8 * kWave)));
+
+inline Lanes Abs(Lanes v) { return v < 0 ? -v : v; }
+
+template <int N>
+class PaethWave {
+ public:
+  PaethWave(const uint8_t* filtered, size_t stride, const uint8_t* up, int width, uint8_t* out,
+            size_t out_stride)
+      : filtered_(filtered), stride_(stride), up_(up), width_(width), out_(out), out_stride_(out_stride) {}
+
+  void Run() {
+    int step = 0;
+    for (; step < std::min(kWave - 1, width_ + kWave - 1); ++step) Step<false>(step);
+    for (; step < width_ - 1; ++step) Step<true>(step);
+    for (; step < width_ + kWave - 1; ++step) Step<false>(step);
+  }
+
+ private:
+  // kInside: all rows are at a pixel that is neither outside of the image nor the last of its row, so that two pixels may be read
+  // and written; the superfluous bytes belong to the next pixel, which is written later.
+  template <bool kInside>
+  void Step(int step) {
+    constexpr int kCopied = kInside && N >= 2 ? 4 : N;
+    std::array<uint32_t, kWave> words{};
+    uint32_t above = 0;
+    for (int r = 0; r < kWave; ++r) {
+      const int x = step - r;
+      if (kInside || (x >= 0 && x < width_)) std::memcpy(&words[r], filtered_ + r * stride_ + x * N, 4);
+    }
+    if (kInside || step < width_) std::memcpy(&above, up_ + step * N, kCopied);
+    const Bytes result = Advance(words, above);
+    std::memcpy(words.data(), &result, sizeof(result));
+    for (int r = 0; r < kWave; ++r) {
+      const int x = step - r;
+      if (kInside || (x >= 0 && x < width_)) {
+        std::memcpy(out_ + r * out_stride_ + x * N, &words[r], kCopied);
+      }
+    }
+  }
+
+  // One pixel of each row: `words` holds the filtered pixels, `above` the pixel over row 0's.
+  Bytes Advance(const std::array<uint32_t, kWave>& words, uint32_t above) {
+    Bytes bytes;
+    std::memcpy(&bytes, words.data(), sizeof(bytes));
+    const Lanes raw = __builtin_convertvector(ReversePixels(bytes), Lanes);
+    const Bytes above_bytes = {static_cast<uint8_t>(above), static_cast<uint8_t>(above >> 8),
+                               static_cast<uint8_t>(above >> 16)};
+    // Above row r's pixel is what row r - 1 gave one step ago.
+    const Lanes up = __builtin_shufflevector(__builtin_convertvector(above_bytes, Lanes), left_, 0, 1,
+                                             2, 3, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27);
+    const Lanes to_left = Abs(up - up_left_);
+    const Lanes to_up = Abs(left_ - up_left_);
+    const Lanes to_up_left = Abs((left_ - up_left_) + (up - up_left_));
+    const Lanes of_uppers = to_up <= to_up_left ? up : up_left_;
+    const Lanes nearest_upper = to_up < to_up_left ? to_up : to_up_left;
+    const Lanes prediction = to_left <= nearest_upper ? left_ : of_uppers;
+    left_ = (raw + prediction) & 0xff;
+    up_left_ = up;
+    return __builtin_convertvector(left_, Bytes);
+  }
+
+  static Bytes ReversePixels(Bytes b) {
+    if constexpr (N == 3) {
+      return __builtin_shufflevector(b, b, 2, 1, 0, 3, 6, 5, 4, 7, 10, 9, 8, 11, 14, 13, 12, 15);
+    } else if constexpr (N == 2) {
+      return __builtin_shufflevector(b, b, 1, 0, 2, 3, 5, 4, 6, 7, 9, 8, 10, 11, 13, 12, 14, 15);
+    } else {
+      return b;
+    }
+  }
+
+  const uint8_t* filtered_;
+  const size_t stride_;
+  const uint8_t* up_;
+  const int width_;
+  uint8_t* out_;
+  const size_t out_stride_;
+  Lanes left_{};
+  Lanes up_left_{};
+};
+
+}  // namespace
+
+template <int kPixelBytes>
+bool UnfilterPng(const uint8_t* filtered, int width, int height, uint8_t* out, size_t out_stride) {
+  const size_t stride = 1 + static_cast<size_t>(width) * kPixelBytes;
+  const std::vector<uint8_t> zeros(stride, 0);
+  const uint8_t* up = zeros.data();
+  for (int y = 0; y < height;) {
+    const uint8_t* rows = filtered + y * stride;
+    int num_paeth = 0;
+    while (num_paeth < kWave && y + num_paeth < height && rows[num_paeth * stride] == kPaeth) ++num_paeth;
+    uint8_t* target = out + y * out_stride;
+    if (num_paeth == kWave) {
+      PaethWave<kPixelBytes>(rows + 1, stride, up, width, target, out_stride).Run();
+      y += kWave;
+    } else {
+      if (!UnfilterRow<kPixelBytes>(rows[0], rows + 1, up, width, target)) return false;
+      ++y;
+    }
+    up = out + (y - 1) * out_stride;
+  }
+  return true;
+}
+
+template bool UnfilterPng<1>(const uint8_t*, int, int, uint8_t*, size_t);
+template bool UnfilterPng<2>(const uint8_t*, int, int, uint8_t*, size_t);
+template bool UnfilterPng<3>(const uint8_t*, int, int, uint8_t*, size_t);
+
+}  // namespace msf
