@@ -3,7 +3,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -15,11 +14,13 @@ Status ReadBytes(const std::filesystem::path& file, std::vector<uint8_t>& bytes)
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
   const std::streamoff size = stream ? static_cast<std::streamoff>(stream.tellg()) : -1;
   if (size < 0 || std::filesystem::is_directory(file)) {
-    return Status::Error(file.string() + ": cannot be opened" + (errno != 0 ? std::string(" (") + std::strerror(errno) + ")" : ""));
+    return Status::Error(file.string() + ": cannot be opened" +
+                         (errno != 0 ? std::string(" (") + std::strerror(errno) + ")" : ""));
   }
   bytes.resize(static_cast<size_t>(size));
   stream.seekg(0);
-  if (!stream.read(reinterpret_cast<char*>(bytes.data()), size)) return Status::Error(file.string() + ": cannot be read");
+  if (!stream.read(reinterpret_cast<char*>(bytes.data()), size))
+    return Status::Error(file.string() + ": cannot be read");
   return bytes.empty() ? Status::Error(file.string() + ": the file is empty") : Status::Ok();
 }
 
@@ -49,7 +50,8 @@ StatusOr<cv::Mat> ImageReader::ReadColor(const std::filesystem::path& file) {
   StatusOr<cv::Mat> image = Read(file);
   if (!image.ok()) return image;
   if (image->depth() != CV_8U || image->channels() == 2) {
-    return Status::Error(file.string() + ": a colour image has 8 bits per channel, this one is " + DescribePixels(*image));
+    return Status::Error(file.string() + ": a colour image has 8 bits per channel, this one is " +
+                         DescribePixels(*image));
   }
   if (image->channels() == 4) cv::cvtColor(*image, *image, cv::COLOR_BGRA2BGR);
   return image;
@@ -58,7 +60,8 @@ StatusOr<cv::Mat> ImageReader::ReadColor(const std::filesystem::path& file) {
 StatusOr<cv::Mat> ImageReader::ReadDepth(const std::filesystem::path& file) {
   StatusOr<cv::Mat> image = Read(file);
   if (image.ok() && image->type() != CV_16UC1) {
-    return Status::Error(file.string() + ": a depth image is 16-bit, 1 channel, this one is " + DescribePixels(*image));
+    return Status::Error(file.string() + ": a depth image is 16-bit, 1 channel, this one is " +
+                         DescribePixels(*image));
   }
   return image;
 }

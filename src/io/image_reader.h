@@ -3,16 +3,16 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <vector>
-
 #include <opencv2/core/mat.hpp>
+#include <vector>
 
 #include "io/png_decoder.h"
 #include "util/status.h"
 
 namespace msf {
 
-// Reads PNG and JPEG files (and whatever else OpenCV decodes). Keeps its buffers from image to image; used by one thread at a time.
+// Reads PNG and JPEG files (and whatever else OpenCV decodes). Keeps its buffers from image to
+// image; used by one thread at a time.
 class ImageReader {
  public:
   // 8-bit, grey (1 channel) or BGR (3 channels; transparency is dropped).

@@ -1,16 +1,17 @@
 #include "io/ply.h"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <cstring>
 #include <ostream>
-
-#include <fmt/format.h>
 
 #include "util/atomic_file.h"
 
 namespace msf {
 
-static_assert(std::endian::native == std::endian::little, "WritePly copies numbers as they are in memory");
+static_assert(std::endian::native == std::endian::little,
+              "WritePly copies numbers as they are in memory");
 
 Status WritePly(const std::filesystem::path& file, const std::vector<ColoredPoint>& points) {
   constexpr size_t kVertexBytes = 3 * sizeof(float) + 3;

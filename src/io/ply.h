@@ -1,12 +1,12 @@
-// Coloured point clouds as PLY files (Turk 1994), binary little-endian: what MeshLab, CloudCompare and Open3D read.
+// Coloured point clouds as PLY files (Turk 1994), binary little-endian: what MeshLab, CloudCompare
+// and Open3D read.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "util/status.h"
 

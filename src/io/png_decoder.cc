@@ -1,11 +1,11 @@
 #include "io/png_decoder.h"
 
+#include <libdeflate.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <optional>
-
-#include <libdeflate.h>
 
 #include "io/png_unfilter.h"
 
@@ -51,13 +51,19 @@ std::optional<Header> ParseHeader(std::span<const uint8_t> ihdr) {
   const uint32_t height = ReadBigEndian(ihdr.data() + 4);
   const int depth = ihdr[8];
   const int color = ihdr[9];
-  const bool plain = ihdr[10] == 0 && ihdr[11] == 0 && ihdr[12] == 0;  // deflate, five filters, no interlacing
-  if (!plain || width == 0 || height == 0 || width > kMaxSide || height > kMaxSide) return std::nullopt;
+  const bool plain =
+      ihdr[10] == 0 && ihdr[11] == 0 && ihdr[12] == 0;  // deflate, five filters, no interlacing
+  if (!plain || width == 0 || height == 0 || width > kMaxSide || height > kMaxSide)
+    return std::nullopt;
   Header header{static_cast<int>(width), static_cast<int>(height)};
-  if (color == 0 && depth == 8) header.pixel_bytes = 1, header.mat_type = CV_8UC1;
-  else if (color == 0 && depth == 16) header.pixel_bytes = 2, header.mat_type = CV_16UC1;
-  else if (color == 2 && depth == 8) header.pixel_bytes = 3, header.mat_type = CV_8UC3;
-  else return std::nullopt;
+  if (color == 0 && depth == 8)
+    header.pixel_bytes = 1, header.mat_type = CV_8UC1;
+  else if (color == 0 && depth == 16)
+    header.pixel_bytes = 2, header.mat_type = CV_16UC1;
+  else if (color == 2 && depth == 8)
+    header.pixel_bytes = 3, header.mat_type = CV_8UC3;
+  else
+    return std::nullopt;
   return header;
 }
 
@@ -73,7 +79,8 @@ PngDecoder::PngDecoder(PngDecoder&&) noexcept = default;
 PngDecoder& PngDecoder::operator=(PngDecoder&&) noexcept = default;
 
 PngDecoder::Outcome PngDecoder::Decode(std::span<const uint8_t> file, cv::Mat& image) {
-  if (file.size() < kSignature.size() || !std::equal(kSignature.begin(), kSignature.end(), file.begin())) {
+  if (file.size() < kSignature.size() ||
+      !std::equal(kSignature.begin(), kSignature.end(), file.begin())) {
     return Outcome::kUnsupported;
   }
   std::span<const uint8_t> rest = file.subspan(kSignature.size());
@@ -83,31 +90,37 @@ PngDecoder::Outcome PngDecoder::Decode(std::span<const uint8_t> file, cv::Mat& i
   if (!header) return Outcome::kUnsupported;
 
   const size_t row_bytes = 1 + static_cast<size_t>(header->width) * header->pixel_bytes;
-  if (const Outcome outcome = Inflate(rest, row_bytes * header->height); outcome != Outcome::kDecoded) {
+  if (const Outcome outcome = Inflate(rest, row_bytes * header->height);
+      outcome != Outcome::kDecoded) {
     return outcome;
   }
   image.create(header->height, header->width, header->mat_type);
   const auto unfilter = header->pixel_bytes == 1   ? UnfilterPng<1>
                         : header->pixel_bytes == 2 ? UnfilterPng<2>
                                                    : UnfilterPng<3>;
-  const bool known_filters = unfilter(filtered_.data(), header->width, header->height, image.data, image.step[0]);
+  const bool known_filters =
+      unfilter(filtered_.data(), header->width, header->height, image.data, image.step[0]);
   return known_filters ? Outcome::kDecoded : Outcome::kBroken;
 }
 
-// Joins and inflates the IDAT chunks of `rest` (all chunks after the header) to exactly `num_bytes` bytes in filtered_.
+// Joins and inflates the IDAT chunks of `rest` (all chunks after the header) to exactly `num_bytes`
+// bytes in filtered_.
 PngDecoder::Outcome PngDecoder::Inflate(std::span<const uint8_t> rest, size_t num_bytes) {
   compressed_.clear();
   while (true) {
     const std::optional<Chunk> chunk = TakeChunk(rest);
     if (!chunk) return Outcome::kBroken;
     if (chunk->Is("IEND")) break;
-    if (chunk->Is("IDAT")) compressed_.insert(compressed_.end(), chunk->data.begin(), chunk->data.end());
+    if (chunk->Is("IDAT"))
+      compressed_.insert(compressed_.end(), chunk->data.begin(), chunk->data.end());
   }
   filtered_.resize(num_bytes + kUnfilterPadding);
   size_t inflated = 0;
-  const libdeflate_result result = libdeflate_zlib_decompress(decompressor_.get(), compressed_.data(), compressed_.size(),
-                                                              filtered_.data(), num_bytes, &inflated);
-  return result == LIBDEFLATE_SUCCESS && inflated == num_bytes ? Outcome::kDecoded : Outcome::kBroken;
+  const libdeflate_result result =
+      libdeflate_zlib_decompress(decompressor_.get(), compressed_.data(), compressed_.size(),
+                                 filtered_.data(), num_bytes, &inflated);
+  return result == LIBDEFLATE_SUCCESS && inflated == num_bytes ? Outcome::kDecoded
+                                                               : Outcome::kBroken;
 }
 
 }  // namespace msf

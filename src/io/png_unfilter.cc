@@ -11,7 +11,8 @@ namespace {
 
 enum Filter : uint8_t { kNone = 0, kSub = 1, kUp = 2, kAverage = 3, kPaeth = 4 };
 
-// The prediction from the left, upper and upper left bytes: whichever is nearest to left + up - up_left.
+// The prediction from the left, upper and upper left bytes: whichever is nearest to left + up -
+// up_left.
 uint8_t PredictPaeth(int left, int up, int up_left) {
   const int to_left = std::abs(up - up_left);
   const int to_up = std::abs(left - up_left);
@@ -59,9 +60,10 @@ bool UnfilterRow(uint8_t filter, const uint8_t* row, const uint8_t* up, int widt
   }
 }
 
-// Undoes kWave successive Paeth rows at once. A pixel needs its left and upper neighbours, so row r runs r pixels behind row 0
-// and all rows advance together: each row is one group of four lanes. Encoders choose this filter for nearly every row of a
-// photograph, and one row alone is a chain of dependent operations that leaves the processor idle.
+// Undoes kWave successive Paeth rows at once. A pixel needs its left and upper neighbours, so row r
+// runs r pixels behind row 0 and all rows advance together: each row is one group of four lanes.
+// Encoders choose this filter for nearly every row of a photograph, and one row alone is a chain of
+// dependent operations that leaves the processor idle.
 constexpr int kWave = 4;
 using Bytes = uint8_t __attribute__((vector_size(4 * kWave)));
 using Lanes = int16_t __attribute__((vector_size(8 * kWave)));
@@ -73,7 +75,12 @@ class PaethWave {
  public:
   PaethWave(const uint8_t* filtered, size_t stride, const uint8_t* up, int width, uint8_t* out,
             size_t out_stride)
-      : filtered_(filtered), stride_(stride), up_(up), width_(width), out_(out), out_stride_(out_stride) {}
+      : filtered_(filtered),
+        stride_(stride),
+        up_(up),
+        width_(width),
+        out_(out),
+        out_stride_(out_stride) {}
 
   void Run() {
     int step = 0;
@@ -83,8 +90,9 @@ class PaethWave {
   }
 
  private:
-  // kInside: all rows are at a pixel that is neither outside of the image nor the last of its row, so that two pixels may be read
-  // and written; the superfluous bytes belong to the next pixel, which is written later.
+  // kInside: all rows are at a pixel that is neither outside of the image nor the last of its row,
+  // so that two pixels may be read and written; the superfluous bytes belong to the next pixel,
+  // which is written later.
   template <bool kInside>
   void Step(int step) {
     constexpr int kCopied = kInside && N >= 2 ? 4 : N;
@@ -92,7 +100,8 @@ class PaethWave {
     uint32_t above = 0;
     for (int r = 0; r < kWave; ++r) {
       const int x = step - r;
-      if (kInside || (x >= 0 && x < width_)) std::memcpy(&words[r], filtered_ + r * stride_ + x * N, 4);
+      if (kInside || (x >= 0 && x < width_))
+        std::memcpy(&words[r], filtered_ + r * stride_ + x * N, 4);
     }
     if (kInside || step < width_) std::memcpy(&above, up_ + step * N, kCopied);
     const Bytes result = Advance(words, above);
@@ -113,8 +122,9 @@ class PaethWave {
     const Bytes above_bytes = {static_cast<uint8_t>(above), static_cast<uint8_t>(above >> 8),
                                static_cast<uint8_t>(above >> 16)};
     // Above row r's pixel is what row r - 1 gave one step ago.
-    const Lanes up = __builtin_shufflevector(__builtin_convertvector(above_bytes, Lanes), left_, 0, 1,
-                                             2, 3, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27);
+    const Lanes up =
+        __builtin_shufflevector(__builtin_convertvector(above_bytes, Lanes), left_, 0, 1, 2, 3, 16,
+                                17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27);
     const Lanes to_left = Abs(up - up_left_);
     const Lanes to_up = Abs(left_ - up_left_);
     const Lanes to_up_left = Abs((left_ - up_left_) + (up - up_left_));
@@ -156,7 +166,8 @@ bool UnfilterPng(const uint8_t* filtered, int width, int height, uint8_t* out, s
   for (int y = 0; y < height;) {
     const uint8_t* rows = filtered + y * stride;
     int num_paeth = 0;
-    while (num_paeth < kWave && y + num_paeth < height && rows[num_paeth * stride] == kPaeth) ++num_paeth;
+    while (num_paeth < kWave && y + num_paeth < height && rows[num_paeth * stride] == kPaeth)
+      ++num_paeth;
     uint8_t* target = out + y * out_stride;
     if (num_paeth == kWave) {
       PaethWave<kPixelBytes>(rows + 1, stride, up, width, target, out_stride).Run();

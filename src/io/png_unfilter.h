@@ -6,10 +6,11 @@
 
 namespace msf {
 
-// Undoes the filters of an image of `height` rows of `width` pixels of kPixelBytes bytes each. `filtered` holds the rows, each
-// led by its filter byte, and may be read up to kUnfilterPadding bytes past its end. Row y goes to `out + y * out_stride` with the
-// bytes of every pixel in reverse order: RGB becomes BGR, and big-endian 16-bit numbers become little-endian.
-// False when a filter byte is not one of the five. Instantiated for 1, 2 and 3 bytes.
+// Undoes the filters of an image of `height` rows of `width` pixels of kPixelBytes bytes each.
+// `filtered` holds the rows, each led by its filter byte, and may be read up to kUnfilterPadding
+// bytes past its end. Row y goes to `out + y * out_stride` with the bytes of every pixel in reverse
+// order: RGB becomes BGR, and big-endian 16-bit numbers become little-endian. False when a filter
+// byte is not one of the five. Instantiated for 1, 2 and 3 bytes.
 template <int kPixelBytes>
 bool UnfilterPng(const uint8_t* filtered, int width, int height, uint8_t* out, size_t out_stride);
 

@@ -9,7 +9,8 @@ namespace msf {
 
 StatusOr<std::vector<TextRow>> ReadTextRows(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file)) return Status::Error(file.string() + ": cannot be opened");
+  if (!stream || std::filesystem::is_directory(file))
+    return Status::Error(file.string() + ": cannot be opened");
   std::vector<TextRow> rows;
   std::string text;
   for (int line = 1; std::getline(stream, text); ++line) {
@@ -26,7 +27,8 @@ std::optional<double> ParseFiniteNumber(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    return std::nullopt;
   return value;
 }
 

@@ -1,9 +1,9 @@
 #include "io/tum_dataset.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "util/options.h"
 
@@ -17,16 +17,18 @@ constexpr const char* kCamera = "camera.yaml";
 
 Status CheckSize(const fs::path& file, const cv::Mat& image, const Camera& camera) {
   if (image.cols == camera.width && image.rows == camera.height) return Status::Ok();
-  return Status::Error(fmt::format("{}: the image has {}x{} pixels, the camera {}x{}; give the camera that took it", file.string(),
-                                   image.cols, image.rows, camera.width, camera.height));
+  return Status::Error(
+      fmt::format("{}: the image has {}x{} pixels, the camera {}x{}; give the camera that took it",
+                  file.string(), image.cols, image.rows, camera.width, camera.height));
 }
 
 StatusOr<Camera> FindCamera(const fs::path& folder, const std::string& camera) {
   if (!camera.empty()) return ReadCamera(camera);
   const fs::path file = folder / kCamera;
   if (fs::exists(file)) return ReadCamera(file.string());
-  return Status::Error(fmt::format("{}: no {} here, so name the camera with --camera ({}, or a YAML file)", folder.string(), kCamera,
-                                   fmt::join(Camera::PresetNames(), ", ")));
+  return Status::Error(
+      fmt::format("{}: no {} here, so name the camera with --camera ({}, or a YAML file)",
+                  folder.string(), kCamera, fmt::join(Camera::PresetNames(), ", ")));
 }
 
 }  // namespace
@@ -34,19 +36,22 @@ StatusOr<Camera> FindCamera(const fs::path& folder, const std::string& camera) {
 StatusOr<Camera> ReadCamera(const std::string& name_or_file) {
   std::error_code ignored;
   if (!fs::is_regular_file(name_or_file, ignored)) {
-    const bool looks_like_file = fs::path(name_or_file).has_parent_path() || fs::path(name_or_file).has_extension();
+    const bool looks_like_file =
+        fs::path(name_or_file).has_parent_path() || fs::path(name_or_file).has_extension();
     if (looks_like_file) return Status::Error(name_or_file + ": there is no such camera file");
     return Camera::Preset(name_or_file);
   }
   Camera camera;
   MSF_RETURN_IF_ERROR(LoadOptions(name_or_file, camera));
-  if (const Status status = camera.Check(); !status.ok()) return Status::Error(name_or_file + ": " + status.message());
+  if (const Status status = camera.Check(); !status.ok())
+    return Status::Error(name_or_file + ": " + status.message());
   return camera;
 }
 
 StatusOr<TumDataset> TumDataset::Open(const fs::path& folder, const std::string& camera) {
   std::error_code ignored;
-  if (!fs::is_directory(folder, ignored)) return Status::Error(folder.string() + ": there is no such folder");
+  if (!fs::is_directory(folder, ignored))
+    return Status::Error(folder.string() + ": there is no such folder");
   TumDataset dataset;
   dataset.folder_ = folder;
   MSF_RETURN_IF_ERROR(dataset.ReadLists());
@@ -63,7 +68,9 @@ Status TumDataset::ReadLists() {
     return frames.status();
   }
   if (!fs::exists(folder_ / "rgb.txt") || !fs::exists(folder_ / "depth.txt")) {
-    return Status::Error(folder_.string() + ": is no data set in TUM layout: it needs rgb.txt and depth.txt, or associations.txt");
+    return Status::Error(
+        folder_.string() +
+        ": is no data set in TUM layout: it needs rgb.txt and depth.txt, or associations.txt");
   }
   StatusOr<std::vector<ListedImage>> color = ReadImageList(folder_ / "rgb.txt", warnings_);
   if (!color.ok()) return color.status();
@@ -71,11 +78,13 @@ Status TumDataset::ReadLists() {
   if (!depth.ok()) return depth.status();
   frames_ = AssociateByTime(*color, *depth);
   if (frames_.empty()) {
-    return Status::Error(fmt::format("{}: no colour image has a depth image within {} s", folder_.string(), kMaxColorDepthGap_s));
+    return Status::Error(fmt::format("{}: no colour image has a depth image within {} s",
+                                     folder_.string(), kMaxColorDepthGap_s));
   }
   if (const size_t num_alone = color->size() - frames_.size(); num_alone > 0) {
-    warnings_.push_back(fmt::format("{}: {} of {} colour images have no depth image within {} s and are left out", folder_.string(),
-                                    num_alone, color->size(), kMaxColorDepthGap_s));
+    warnings_.push_back(
+        fmt::format("{}: {} of {} colour images have no depth image within {} s and are left out",
+                    folder_.string(), num_alone, color->size(), kMaxColorDepthGap_s));
   }
   return Status::Ok();
 }

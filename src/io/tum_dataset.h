@@ -17,13 +17,15 @@ namespace msf {
 // The camera that `name_or_file` means: a preset's name or a YAML file with the keys of Camera.
 StatusOr<Camera> ReadCamera(const std::string& name_or_file);
 
-// A folder with rgb.txt and depth.txt, or associations.txt (which is preferred). Opening reads the lists only. Used by one thread
-// at a time.
+// A folder with rgb.txt and depth.txt, or associations.txt (which is preferred). Opening reads the
+// lists only. Used by one thread at a time.
 class TumDataset {
  public:
-  // `camera`: see ReadCamera; when empty the folder must hold a camera.yaml. Errors: no data set there, unreadable or empty lists,
-  // no pair of colour and depth, no camera. What could be survived in the lists is told by warnings().
-  static StatusOr<TumDataset> Open(const std::filesystem::path& folder, const std::string& camera = "");
+  // `camera`: see ReadCamera; when empty the folder must hold a camera.yaml. Errors: no data set
+  // there, unreadable or empty lists, no pair of colour and depth, no camera. What could be
+  // survived in the lists is told by warnings().
+  static StatusOr<TumDataset> Open(const std::filesystem::path& folder,
+                                   const std::string& camera = "");
 
   size_t size() const { return frames_.size(); }
   const FrameFiles& files(size_t index) const { return frames_[index]; }
@@ -31,8 +33,8 @@ class TumDataset {
   const Camera& camera() const { return *camera_; }
   const std::filesystem::path& folder() const { return folder_; }
 
-  // Reads the images of frame `index`; the frame's id is its index. An error (missing or damaged file, wrong size, wrong type)
-  // concerns this frame only: the next one may well be fine.
+  // Reads the images of frame `index`; the frame's id is its index. An error (missing or damaged
+  // file, wrong size, wrong type) concerns this frame only: the next one may well be fine.
   StatusOr<RgbdFramePtr> Load(size_t index);
 
   // groundtruth.txt when the folder has one.
