@@ -1,0 +1,55 @@
+// From a feature to an observation: how far each of its numbers can be trusted.
+#pragma once
+
+#include <algorithm>
+
+#include "feature/frame_features.h"
+#include "feature/scale_levels.h"
+#include "optimization/reprojection.h"
+#include "util/status.h"
+
+namespace msf {
+
+// Measurement noise. A point found at pyramid level l is located to `position_sigma_px` * scale(l).
+// Disparity (bf / depth) carries the noise of the depth sensor, which a structured-light camera has
+// constant in disparity, plus the error of sampling the depth next to the true point, which grows
+// with the patch.
+struct NoiseOptions {
+  double position_sigma_px = 1.0;
+  double disparity_sigma_px = 1.0;
+  double disparity_level_share = 1.0;
+
+  template <typename Visitor>
+  void Visit(Visitor& visit) {
+    visit("position_sigma_px", position_sigma_px, "noise of a point's position at level 0, px");
+    visit("disparity_sigma_px", disparity_sigma_px,
+          "noise of the virtual disparity bf / depth, px");
+    visit("disparity_level_share", disparity_level_share,
+          "0: disparity noise equal at all levels; 1: grows like the position's");
+  }
+  Status Check() const {
+    const bool ok = position_sigma_px > 0 && disparity_sigma_px > 0 && disparity_level_share >= 0;
+    return ok ? Status::Ok() : Status::Error("noise: sigmas must be positive");
+  }
+};
+
+// The observation of feature `i`, weighted by `static_weight`.
+inline ImageObservation ObserveFeature(const FrameFeatures& features, int i,
+                                       const ScaleLevels& levels, const NoiseOptions& noise,
+                                       double static_weight) {
+  ImageObservation observation;
+  const double scale = levels.scale(features.level[i]);
+  const double position_sigma_px = noise.position_sigma_px * scale;
+  observation.uv_px = features.uv_px[i].cast<double>();
+  observation.inv_sigma2 = 1 / (position_sigma_px * position_sigma_px);
+  if (features.HasDepth(i)) {
+    const double sigma_px =
+        noise.disparity_sigma_px * (1 + noise.disparity_level_share * (scale - 1));
+    observation.disparity_px = features.uv_px[i].x() - features.u_right_px[i];
+    observation.inv_sigma2_disparity = 1 / (sigma_px * sigma_px);
+  }
+  observation.weight = static_weight;
+  return observation;
+}
+
+}  // namespace msf

@@ -1,0 +1,127 @@
+// How far an observation lies from where a point projects: the residual that pose optimisation and
+// bundle adjustment share.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/rigid3d.h"
+#include "sensor/camera.h"
+
+namespace msf {
+
+// One sighting of a point. The residual is (u, v) or, with depth, (u, v, d) where d = bf / z is the
+// disparity of a virtual stereo pair. Disparity stands in for the usual u_R = u - d because its
+// error comes from the depth sensor alone and so is independent of the error of u: each gets its
+// own variance and the covariance stays diagonal.
+struct ImageObservation {
+  Eigen::Vector2d uv_px = Eigen::Vector2d::Zero();  // undistorted
+  double disparity_px = -1;                         // bf / measured depth; <= 0: no depth
+  double inv_sigma2 = 1;                            // of u and of v, 1/px^2
+  double inv_sigma2_disparity = 1;                  // of the disparity, 1/px^2
+  double weight = 1;                                // static probability, [0, 1]; 0: ignored
+
+  bool HasDepth() const { return disparity_px > 0; }
+  // False for what no solver should touch: weight 0, or a value that is no finite number.
+  bool Usable() const {
+    return weight > 0 && std::isfinite(weight) && uv_px.allFinite() &&
+           std::isfinite(disparity_px) && inv_sigma2 > 0 && std::isfinite(inv_sigma2) &&
+           inv_sigma2_disparity >= 0 && std::isfinite(inv_sigma2_disparity);
+  }
+};
+
+// Limits between inliers and outliers: 95 % quantiles of chi^2 with 2 and 3 degrees of freedom.
+struct Chi2Gates {
+  double two = 5.991;
+  double three = 7.815;
+
+  double For(const ImageObservation& observation) const {
+    return observation.HasDepth() ? three : two;
+  }
+};
+
+// A point nearer to the camera plane than this has no projection: its residual would change so
+// wildly that a single wrong match could hold the pose in place, m.
+inline constexpr double kMinProjectionDepth_m = 0.1;
+// No observation costs more than one with this chi^2, and an impossible projection costs as much:
+// no step gains by pushing points behind the camera, and none is refused because a wrong match
+// crosses the camera plane.
+inline constexpr double kMaxChi2 = 1e6;
+
+// Predicted minus measured (u, v, d) in px; d is 0 without depth. `p_c` needs z >=
+// kMinProjectionDepth_m.
+inline Eigen::Vector3d ReprojectionResidual(const Camera& camera, const Eigen::Vector3d& p_c,
+                                            const ImageObservation& observation) {
+  const double inv_z = 1 / p_c.z();
+  return {camera.fx * p_c.x() * inv_z + camera.cx - observation.uv_px.x(),
+          camera.fy * p_c.y() * inv_z + camera.cy - observation.uv_px.y(),
+          observation.HasDepth() ? camera.bf * inv_z - observation.disparity_px : 0};
+}
+
+// Derivative of (u, v, d) by the point in camera coordinates, px/m.
+inline Eigen::Matrix3d ReprojectionJacobian(const Camera& camera, const Eigen::Vector3d& p_c) {
+  const double inv_z = 1 / p_c.z(), inv_z2 = inv_z * inv_z;
+  Eigen::Matrix3d jacobian;
+  jacobian << camera.fx * inv_z, 0, -camera.fx * p_c.x() * inv_z2,  //
+      0, camera.fy * inv_z, -camera.fy * p_c.y() * inv_z2,          //
+      0, 0, -camera.bf * inv_z2;
+  return jacobian;
+}
+
+// Squared residual over variance; infinite for a point at or behind the camera plane.
+inline double ReprojectionChi2(const Camera& camera, const Eigen::Vector3d& p_c,
+                               const ImageObservation& observation) {
+  if (!(p_c.z() >= kMinProjectionDepth_m)) return std::numeric_limits<double>::infinity();
+  const Eigen::Vector3d r = ReprojectionResidual(camera, p_c, observation);
+  return observation.inv_sigma2 * r.head<2>().squaredNorm() +
+         observation.inv_sigma2_disparity * r.z() * r.z();
+}
+
+// Huber's kernel on chi^2 with its knee at `gate`: rho(s) = s below, 2 sqrt(gate s) - gate above.
+inline double HuberCost(double chi2, double gate) {
+  return chi2 <= gate ? chi2 : 2 * std::sqrt(gate * chi2) - gate;
+}
+// rho'(s), the factor on the information of an observation.
+inline double HuberWeight(double chi2, double gate) {
+  return chi2 <= gate ? 1 : std::sqrt(gate / chi2);
+}
+
+// weight * rho(chi^2), or weight * chi^2 when the kernel is off.
+inline double ObservationCost(const ImageObservation& observation, double chi2, double gate,
+                              bool robust) {
+  const double bounded = std::min(chi2, kMaxChi2);
+  return observation.weight * (robust ? HuberCost(bounded, gate) : bounded);
+}
+
+// How one observation pulls on its point in camera coordinates: cost, Gauss-Newton gradient J^T W r
+// and information J^T W J (robust and static weight included). An impossible projection costs but
+// does not pull.
+struct PointPull {
+  double cost = 0;
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+};
+
+inline PointPull PullOnPoint(const Camera& camera, const Eigen::Vector3d& p_c,
+                             const ImageObservation& observation, double gate, bool robust) {
+  PointPull pull;
+  const double chi2 = ReprojectionChi2(camera, p_c, observation);
+  pull.cost = ObservationCost(observation, chi2, gate, robust);
+  if (!std::isfinite(chi2)) return pull;
+  const Eigen::Vector3d r = ReprojectionResidual(camera, p_c, observation);
+  const double scale = observation.weight * (robust ? HuberWeight(chi2, gate) : 1);
+  const double w = scale * observation.inv_sigma2;
+  const double w_d = observation.HasDepth() ? scale * observation.inv_sigma2_disparity : 0;
+  // Rows of ReprojectionJacobian: (a, 0, c), (0, b, d), (0, 0, e).
+  const double inv_z = 1 / p_c.z();
+  const double a = camera.fx * inv_z, b = camera.fy * inv_z;
+  const double c = -a * p_c.x() * inv_z, d = -b * p_c.y() * inv_z, e = -camera.bf * inv_z * inv_z;
+  const double ac = w * a * c, bd = w * b * d;
+  pull.gradient << w * a * r.x(), w * b * r.y(), w * (c * r.x() + d * r.y()) + w_d * e * r.z();
+  pull.information << w * a * a, 0, ac, 0, w * b * b, bd, ac, bd, w * (c * c + d * d) + w_d * e * e;
+  return pull;
+}
+
+}  // namespace msf
