@@ -23,6 +23,10 @@ class Map {
   const ScaleLevels& levels() const { return levels_; }
   // Grows with every change: who caches something compares it.
   uint64_t version() const { return version_; }
+  // Grows when the map is corrected as a whole (loop, merge, full bundle adjustment): what a solver computed from an older copy
+  // must not be applied any more.
+  uint64_t epoch() const { return epoch_; }
+  void StartNewEpoch() { ++epoch_; }
 
   // --- Atlas: the map that tracking extends, and the older ones.
   MapId StartNewMap();
@@ -52,8 +56,8 @@ class Map {
   MapId MapOf(KeyFrameId id) const;
 
   // --- Points.
-  MapPointId AddPoint(const Eigen::Vector3d& p_w, KeyFrameId first_keyframe, int feature,
-                      const std::array<uint8_t, 3>& color_bgr);
+  // A new point that `feature` of `first_keyframe` shows; colour, descriptor and static weight come from there.
+  MapPointId AddPoint(const Eigen::Vector3d& p_w, KeyFrameId first_keyframe, int feature);
   const MapPoint* FindPoint(MapPointId id) const;
   std::vector<MapPointId> PointIds(MapId map) const;
   int NumPoints(MapId map) const;
@@ -98,6 +102,7 @@ class Map {
   std::shared_ptr<const Camera> camera_;
   ScaleLevels levels_;
   uint64_t version_ = 0;
+  uint64_t epoch_ = 0;
   MapId active_map_;
   int64_t num_maps_ = 0;
   // Indexed by id; null where the object is gone.

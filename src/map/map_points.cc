@@ -7,8 +7,7 @@
 
 namespace msf {
 
-MapPointId Map::AddPoint(const Eigen::Vector3d& p_w, KeyFrameId first_keyframe, int feature,
-                         const std::array<uint8_t, 3>& color_bgr) {
+MapPointId Map::AddPoint(const Eigen::Vector3d& p_w, KeyFrameId first_keyframe, int feature) {
   ++version_;
   const KeyFrame& keyframe = MutableKeyFrame(first_keyframe);
   auto point = std::make_unique<MapPoint>();
@@ -18,7 +17,7 @@ MapPointId Map::AddPoint(const Eigen::Vector3d& p_w, KeyFrameId first_keyframe, 
   point->first_keyframe = point->reference = first_keyframe;
   point->descriptor = keyframe.features->descriptors[feature];
   point->static_weight = keyframe.features->static_weight[feature];
-  point->color_bgr = color_bgr;
+  point->color_bgr = keyframe.colors_bgr[feature];
   const MapPointId id = point->id;
   points_.push_back(std::move(point));
   replaced_by_.emplace_back();

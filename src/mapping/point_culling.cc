@@ -1,0 +1,21 @@
+#include "mapping/point_culling.h"
+
+namespace msf {
+
+void RecentPoints::Cull(const MappingOptions& options, KeyFrameId newest, Map& map) {
+  std::vector<MapPointId> still_young;
+  for (const MapPointId id : points_) {
+    const MapPoint* point = map.FindPoint(id);
+    if (!point) continue;
+    const int64_t age = newest.value() - point->first_keyframe.value();
+    const bool few_observers = static_cast<int>(point->observations.size()) < options.min_observations;
+    if (point->FoundRatio() < options.min_found_ratio || (age >= 2 && few_observers)) {
+      map.RemovePoint(id);
+    } else if (age < 3) {
+      still_young.push_back(id);
+    }
+  }
+  points_ = std::move(still_young);
+}
+
+}  // namespace msf

@@ -1,0 +1,17 @@
+// Those who want to know what happens: viewers, loggers, recorders. The system never asks whether they exist.
+#pragma once
+
+#include "mapping/local_mapper.h"
+#include "tracking/tracking_result.h"
+
+namespace msf {
+
+// The calls come from the thread on which the thing happened; they should return quickly and must not call the system.
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  virtual void OnFrame(const TrackingResult& /*result*/) {}
+  virtual void OnKeyFrameMapped(KeyFrameId /*id*/, const MappingSummary& /*summary*/) {}
+};
+
+}  // namespace msf

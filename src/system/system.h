@@ -1,0 +1,62 @@
+// The whole system: frames in, poses out, a map behind. The one room with threads and queues.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "map/shared_map.h"
+#include "sensor/rgbd_frame.h"
+#include "system/observer.h"
+#include "system/system_options.h"
+#include "tracking/trajectory_recorder.h"
+
+namespace msf {
+
+struct KeyFramePose {
+  KeyFrameId id;
+  double time_s = 0;
+  Rigid3d T_wc;
+  MapId map_id;
+};
+
+struct ColoredPoint {
+  Eigen::Vector3d p_w;
+  std::array<uint8_t, 3> color_bgr;
+};
+
+// What remains when the last frame has been seen: everything in the coordinates of the final map.
+struct Reconstruction {
+  std::vector<ResolvedFrame> frames;    // one per frame given to Track(), in order
+  std::vector<KeyFramePose> keyframes;  // of all maps, ascending by id
+  std::vector<ColoredPoint> points;     // of the main map
+  MapId main_map;                       // the one with most frames
+  int num_maps = 0;
+  int num_loops = 0;   // loops closed
+  int num_merges = 0;  // maps merged
+};
+
+class System {
+ public:
+  // An error (unreadable vocabulary, options or camera that make no sense) is a sentence.
+  static StatusOr<std::unique_ptr<System>> Create(const SystemOptions& options, const Camera& camera);
+  ~System();
+  System(const System&) = delete;
+  System& operator=(const System&) = delete;
+
+  // Observers live at least as long as the system. To be added before the first frame.
+  void AddObserver(std::shared_ptr<Observer> observer);
+
+  // Locates the camera of one frame. Frames come in the order of time from one thread; a frame whose images do not fit the
+  // camera, or whose time is not later than the last one's, is an error and changes nothing.
+  StatusOr<TrackingResult> Track(const RgbdFramePtr& frame);
+
+  // Ends all work in order (mapping, loop closing), and resolves the trajectory against the final map. Track() must not follow.
+  Reconstruction Finish();
+
+ private:
+  class Impl;
+  explicit System(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace msf

@@ -1,0 +1,43 @@
+// Every option of the system, section by section (a section is a room).
+#pragma once
+
+#include <string>
+
+#include "feature/orb_extractor.h"
+#include "loop_closing/loop_closing_options.h"
+#include "mapping/mapping_options.h"
+#include "tracking/relocalizer.h"
+#include "tracking/tracking_options.h"
+
+namespace msf {
+
+struct SystemOptions {
+  bool deterministic = false;
+  uint64_t seed = 0;
+  std::string vocabulary;
+  std::string dynamic = "off";
+  OrbOptions feature;
+  NoiseOptions noise;
+  TrackingOptions tracking;
+  RelocalizationOptions relocalization;
+  MappingOptions mapping;
+  LoopClosingOptions loop_closing;
+
+  template <typename Visitor>
+  void Visit(Visitor& visit) {
+    visit("deterministic", deterministic, "all stages inline on one thread: two runs give equal bytes");
+    visit("seed", seed, "of everything random");
+    visit("vocabulary", vocabulary, "file of visual words; empty: the one that ships");
+    visit("dynamic", dynamic, "what happens to moving things: off");
+    visit("feature", feature, "");
+    visit("noise", noise, "");
+    visit("tracking", tracking, "");
+    visit("relocalization", relocalization, "");
+    visit("mapping", mapping, "");
+    visit("loop_closing", loop_closing, "");
+  }
+  // The first value that makes no sense, as a sentence.
+  Status Check() const;
+};
+
+}  // namespace msf

@@ -1,0 +1,65 @@
+#include "tracking/local_map.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace msf {
+
+void LocalMap::Clear() { *this = LocalMap(); }
+
+void LocalMap::Update(const Map& map, const Frame& frame, int max_keyframes, int max_neighbours) {
+  std::vector<KeyFrameId> keyframes = SelectKeyFrames(map, frame, max_keyframes, max_neighbours);
+  if (keyframes.empty()) return;  // a frame without points leaves the former neighbourhood in place
+  T_cw_best_keyframe_ = map.PoseOf(best_keyframe_);
+  if (keyframes == keyframes_ && map_version_ == map.version()) return;
+  keyframes_ = std::move(keyframes);
+  map_version_ = map.version();
+  CopyPoints(map);
+}
+
+std::vector<KeyFrameId> LocalMap::SelectKeyFrames(const Map& map, const Frame& frame, int max_keyframes,
+                                                  int max_neighbours) {
+  std::map<KeyFrameId, int> votes;
+  for (const MapPointId id : frame.points) {
+    const MapPoint* point = map.FindPoint(id);
+    if (!point) continue;
+    for (const Observation& observation : point->observations) ++votes[observation.keyframe];
+  }
+  std::vector<std::pair<KeyFrameId, int>> ranked(votes.begin(), votes.end());
+  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  best_keyframe_ = ranked.empty() ? KeyFrameId() : ranked.front().first;
+
+  std::set<KeyFrameId> selected;
+  for (const auto& [id, count] : ranked) selected.insert(id);
+  const auto full = [&] { return static_cast<int>(selected.size()) >= max_keyframes; };
+  for (const auto& [id, count] : ranked) {
+    if (full()) break;
+    // One new neighbour, child and parent each: the rim of the neighbourhood without running away.
+    const auto add_first_new = [&](const auto& candidates) {
+      for (const KeyFrameId candidate : candidates) {
+        if (selected.insert(candidate).second) return;
+      }
+    };
+    add_first_new(map.covisibility().Best(id, max_neighbours));
+    add_first_new(map.tree().Children(id));
+    if (map.tree().Parent(id).valid()) selected.insert(map.tree().Parent(id));
+  }
+  return {selected.begin(), selected.end()};
+}
+
+void LocalMap::CopyPoints(const Map& map) {
+  std::vector<MapPointId> ids;
+  for (const KeyFrameId keyframe : keyframes_) {
+    for (const MapPointId id : map.FindKeyFrame(keyframe)->points) {
+      if (id.valid()) ids.push_back(id);
+    }
+  }
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  points_.clear();
+  points_.reserve(ids.size());
+  for (const MapPointId id : ids) points_.emplace_back(*map.FindPoint(id));
+}
+
+}  // namespace msf

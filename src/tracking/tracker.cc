@@ -1,0 +1,200 @@
+#include "tracking/tracker.h"
+
+#include "tracking/keyframe_creation.h"
+
+namespace msf {
+namespace {
+
+// For so long after relocalisation tracking searches wider and asks for more inliers.
+constexpr double kFreshlyRelocalized_s = 1.0;
+
+}  // namespace
+
+const char* ToString(TrackingState state) {
+  switch (state) {
+    case TrackingState::kInitialising: return "initialising";
+    case TrackingState::kTracking: return "tracking";
+    case TrackingState::kRecentlyLost: return "recently_lost";
+    case TrackingState::kLost: return "lost";
+  }
+  return "unknown";
+}
+
+Tracker::Tracker(const Options& options, std::shared_ptr<const Camera> camera, const ScaleLevels& levels,
+                 SharedMap& map, std::shared_ptr<const Vocabulary> vocabulary, const KeyFrameDatabase& database)
+    : options_(options), camera_(std::move(camera)), levels_(levels),
+      context_{*camera_, levels_, options_.tracking, options_.noise}, map_(map), vocabulary_(std::move(vocabulary)),
+      database_(database) {}
+
+TrackingResult Tracker::Track(RgbdFramePtr image, std::shared_ptr<const FrameFeatures> features,
+                              const MappingLoad& load) {
+  TrackingResult result;
+  result.frame_id = image->id;
+  result.time_s = image->time_s;
+  result.num_features = features->size();
+  frame_ = Frame{.image = std::move(image), .features = std::move(features)};
+  frame_.points.assign(frame_.features->size(), MapPointId());
+  matches_.clear();
+
+  const bool has_map = state_ == TrackingState::kTracking || state_ == TrackingState::kRecentlyLost;
+  bool tracked;
+  if (has_map) {
+    tracked = FindPose(result) && RefineWithLocalMap(result);
+    if (tracked) InsertKeyFrameIfWanted(load, result);
+  } else {
+    tracked = StartMap(result);
+  }
+  UpdateState(tracked, result);
+  RememberFrame(tracked, result);
+  return result;
+}
+
+bool Tracker::StartMap(TrackingResult& result) {
+  if (frame_.features->size() < options_.tracking.min_initial_points) return false;
+  SharedMap::Writer map = map_.Write();
+  map->StartNewMap();
+  BecomeKeyFrame(*map, result);
+  result.started_map = true;
+  local_map_.Clear();
+  result.num_inliers = frame_.NumPoints();
+  return true;
+}
+
+bool Tracker::FindPose(TrackingResult& result) {
+  const StageTimer timer(result.timings_ms, "pose");
+  if (state_ == TrackingState::kTracking) {
+    RefreshLastFrame();
+    if (FollowMotion() || FollowReferenceKeyFrame()) return true;
+  }
+  return RelocalizeFrame();
+}
+
+void Tracker::RefreshLastFrame() { last_.T_cw = last_.T_c_reference * map_.Read()->PoseOf(last_.reference); }
+
+bool Tracker::FollowMotion() {
+  frame_.T_cw = velocity_ ? *velocity_ * last_.T_cw : last_.T_cw;
+  matches_ = MatchLastFrame(context_, *map_.Read(), last_, *frame_.features, frame_.T_cw);
+  if (static_cast<int>(matches_.size()) < options_.tracking.min_motion_matches) return false;
+  return OptimizeFramePose(context_, *frame_.features, options_.tracking.min_pose_inliers, matches_, frame_.T_cw);
+}
+
+bool Tracker::FollowReferenceKeyFrame() {
+  const BagOfWords& words = FrameWords();
+  {
+    const SharedMap::Reader map = map_.Read();
+    const KeyFrame* reference = map->FindKeyFrame(last_.reference);
+    if (!reference) return false;
+    const BagOfWords reference_words =
+        reference->words ? *reference->words : vocabulary_->Transform(reference->features->descriptors);
+    matches_ = MatchKeyFrame(context_, *map, *reference, reference_words, *frame_.features, words);
+  }
+  if (static_cast<int>(matches_.size()) < options_.tracking.min_reference_matches) return false;
+  frame_.T_cw = last_.T_cw;
+  return OptimizeFramePose(context_, *frame_.features, options_.tracking.min_pose_inliers, matches_, frame_.T_cw);
+}
+
+bool Tracker::RelocalizeFrame() {
+  if (frame_.features->size() < options_.relocalization.min_matches) return false;
+  const BagOfWords& words = FrameWords();
+  const SharedMap::Reader map = map_.Read();
+  const auto covisible = [&](KeyFrameId id) { return map->covisibility().Best(id, options_.tracking.max_neighbours); };
+  const std::vector<KeyFrameId> candidates = database_.RelocalizationCandidates(words, covisible);
+  const uint64_t seed = options_.seed + static_cast<uint64_t>(frame_.image->id.value());
+  std::optional<Relocalization> found =
+      Relocalize(context_, options_.relocalization, *map, candidates, *frame_.features, words, seed);
+  if (!found) return false;
+  frame_.T_cw = found->T_cw;
+  frame_.reference = found->keyframe;
+  matches_ = std::move(found->matches);
+  relocalized_time_s_ = frame_.image->time_s;
+  return true;
+}
+
+bool Tracker::RefineWithLocalMap(TrackingResult& result) {
+  const StageTimer timer(result.timings_ms, "local_map");
+  const TrackingOptions& options = options_.tracking;
+  for (const PointMatch& match : matches_) frame_.points[match.feature] = match.point;
+  local_map_.Update(*map_.Read(), frame_, options.max_local_keyframes, options.max_neighbours);
+  const bool fresh = frame_.image->time_s - relocalized_time_s_ < kFreshlyRelocalized_s;
+  const double radius_factor = fresh ? options.local_radius_factor_relocalized : options.local_radius_factor;
+  const LocalMatches local =
+      MatchLocalPoints(context_, local_map_.points(), *frame_.features, frame_.T_cw, matches_, radius_factor);
+  matches_.insert(matches_.end(), local.matches.begin(), local.matches.end());
+  const int min_inliers = fresh ? options.min_local_inliers_relocalized : options.min_local_inliers;
+  const bool tracked = OptimizeFramePose(context_, *frame_.features, min_inliers, matches_, frame_.T_cw);
+  result.num_inliers = static_cast<int>(matches_.size());
+  TakeMatches(matches_);
+  if (!local_map_.best_keyframe().valid()) return false;
+  frame_.reference = local_map_.best_keyframe();
+  frame_.T_c_reference = frame_.T_cw * local_map_.T_cw_best_keyframe().Inverse();
+
+  SharedMap::Writer map = map_.Write();
+  for (const MapPointId id : local.expected) {
+    if (map->FindPoint(id)) map->CountVisible(id);
+  }
+  for (const PointMatch& match : matches_) {
+    if (map->FindPoint(match.point)) map->CountFound(match.point);
+  }
+  return tracked;
+}
+
+void Tracker::TakeMatches(std::vector<PointMatch> matches) {
+  frame_.points.assign(frame_.features->size(), MapPointId());
+  for (const PointMatch& match : matches) frame_.points[match.feature] = match.point;
+}
+
+void Tracker::InsertKeyFrameIfWanted(const MappingLoad& load, TrackingResult& result) {
+  const StageTimer timer(result.timings_ms, "keyframe");
+  KeyFrameEvidence evidence = GatherEvidence(context_, *map_.Read(), frame_);
+  evidence.since_last_s = result.time_s - last_keyframe_time_s_;
+  if (!WantsKeyFrame(evidence, load, options_.tracking.keyframe)) return;
+  SharedMap::Writer map = map_.Write();
+  // The map may have been corrected since it was matched: the frame joins it where its reference keyframe is now.
+  frame_.T_cw = frame_.T_c_reference * map->PoseOf(frame_.reference);
+  BecomeKeyFrame(*map, result);
+}
+
+void Tracker::BecomeKeyFrame(Map& map, TrackingResult& result) {
+  frame_.reference = InsertKeyFrame(context_, frame_, map);
+  frame_.T_c_reference = Rigid3d();
+  last_keyframe_time_s_ = result.time_s;
+  result.new_keyframe = frame_.reference;
+}
+
+void Tracker::UpdateState(bool tracked, TrackingResult& result) {
+  if (tracked) {
+    state_ = TrackingState::kTracking;
+    last_tracked_time_s_ = result.time_s;
+  } else if (state_ == TrackingState::kTracking) {
+    state_ = TrackingState::kRecentlyLost;
+  } else if (state_ == TrackingState::kRecentlyLost &&
+             result.time_s - last_tracked_time_s_ > options_.tracking.recently_lost_s) {
+    state_ = TrackingState::kLost;
+    SharedMap::Writer map = map_.Write();
+    const MapId active = map->active_map();
+    if (map->NumKeyFrames(active) < options_.tracking.min_keyframes_to_keep_map) map->DropMap(active);
+  }
+  result.state = state_;
+}
+
+void Tracker::RememberFrame(bool tracked, TrackingResult& result) {
+  velocity_.reset();
+  const bool follows = tracked && last_frame_tracked_ && !result.started_map;
+  last_frame_tracked_ = tracked;
+  if (!tracked) return;
+  if (follows) velocity_ = frame_.T_cw * last_.T_cw.Inverse();
+  result.T_cw = frame_.T_cw;
+  result.map_id = map_.Read()->MapOf(frame_.reference);
+  result.reference = frame_.reference;
+  result.T_c_reference = frame_.T_c_reference;
+  last_ = std::move(frame_);
+}
+
+const BagOfWords& Tracker::FrameWords() {
+  if (!frame_.words) {
+    frame_.words = std::make_shared<const BagOfWords>(vocabulary_->Transform(frame_.features->descriptors));
+  }
+  return *frame_.words;
+}
+
+}  // namespace msf

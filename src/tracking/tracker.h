@@ -1,0 +1,71 @@
+// Follows the camera from frame to frame and decides what the map keeps.
+#pragma once
+
+#include <memory>
+
+#include "map/shared_map.h"
+#include "place_recognition/keyframe_database.h"
+#include "place_recognition/vocabulary.h"
+#include "tracking/keyframe_policy.h"
+#include "tracking/local_map.h"
+#include "tracking/pose_tracking.h"
+#include "tracking/relocalizer.h"
+#include "tracking/tracking_result.h"
+
+namespace msf {
+
+// Single-threaded; shares the map and the keyframe database with mapping and loop closing, which may run beside it.
+class Tracker {
+ public:
+  struct Options {
+    TrackingOptions tracking;
+    RelocalizationOptions relocalization;
+    NoiseOptions noise;
+    uint64_t seed = 0;
+  };
+  Tracker(const Options& options, std::shared_ptr<const Camera> camera, const ScaleLevels& levels, SharedMap& map,
+          std::shared_ptr<const Vocabulary> vocabulary, const KeyFrameDatabase& database);
+
+  // Frames must come in the order of time. `load` says how busy the mapper is.
+  TrackingResult Track(RgbdFramePtr image, std::shared_ptr<const FrameFeatures> features, const MappingLoad& load);
+
+ private:
+  bool StartMap(TrackingResult& result);
+  // A first pose from the motion model, else the reference keyframe, else relocalisation.
+  bool FindPose(TrackingResult& result);
+  bool FollowMotion();
+  bool FollowReferenceKeyFrame();
+  bool RelocalizeFrame();
+  // Matches the local map and optimises once more; false when too little of it agrees.
+  bool RefineWithLocalMap(TrackingResult& result);
+  void InsertKeyFrameIfWanted(const MappingLoad& load, TrackingResult& result);
+  void BecomeKeyFrame(Map& map, TrackingResult& result);
+  void UpdateState(bool tracked, TrackingResult& result);
+  void RememberFrame(bool tracked, TrackingResult& result);
+
+  const BagOfWords& FrameWords();
+  void TakeMatches(std::vector<PointMatch> matches);
+  // The last frame's pose in the map as it is now, after whatever corrections came since.
+  void RefreshLastFrame();
+
+  const Options options_;
+  const std::shared_ptr<const Camera> camera_;
+  const ScaleLevels levels_;
+  const TrackingContext context_;
+  SharedMap& map_;
+  const std::shared_ptr<const Vocabulary> vocabulary_;
+  const KeyFrameDatabase& database_;
+
+  TrackingState state_ = TrackingState::kInitialising;
+  Frame frame_;  // the present one
+  Frame last_;   // the last one that had a pose
+  std::vector<PointMatch> matches_;
+  std::optional<Rigid3d> velocity_;  // T_cl: last camera to present camera, from one frame to the next
+  LocalMap local_map_;
+  bool last_frame_tracked_ = false;
+  double last_keyframe_time_s_ = 0;
+  double last_tracked_time_s_ = 0;
+  double relocalized_time_s_ = -1e9;
+};
+
+}  // namespace msf

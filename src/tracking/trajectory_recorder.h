@@ -1,0 +1,38 @@
+// Remembers every frame relative to its reference keyframe, so that later corrections of the map reach it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "map/map.h"
+#include "tracking/tracking_result.h"
+
+namespace msf {
+
+// Where a frame was in the end.
+struct ResolvedFrame {
+  FrameId frame_id;
+  double time_s = 0;
+  TrackingState state = TrackingState::kInitialising;
+  std::optional<Rigid3d> T_wc;  // empty: no pose, or its map was dropped
+  MapId map_id;
+};
+
+class TrajectoryRecorder {
+ public:
+  void Record(const TrackingResult& result);
+  // One entry per recorded frame, in their order, with the keyframes' poses of this moment.
+  std::vector<ResolvedFrame> Resolve(const Map& map) const;
+
+ private:
+  struct Entry {
+    FrameId frame_id;
+    double time_s;
+    TrackingState state;
+    KeyFrameId reference;  // invalid without a pose
+    Rigid3d T_c_reference;
+  };
+  std::vector<Entry> entries_;
+};
+
+}  // namespace msf
