@@ -7,6 +7,7 @@
 #include "feature/fast_corners.h"
 #include "feature/image_pyramid.h"
 #include "feature/point_depth.h"
+#include "feature/score_peak.h"
 #include "feature/steered_brief.h"
 
 namespace msf {
@@ -90,7 +91,8 @@ void OrbExtractor::ExtractLevel(int level, int quota, FrameFeatures& features) {
   if (area.width < 1 || area.height < 1) return;
   std::vector<Corner>& corners = buffers_->corners;
   cv::Mat scores = buffers_->scores(cv::Rect({0, 0}, image.size()));
-  ComputeFastScores(image, {area.x - 1, area.y - 1, area.width + 2, area.height + 2}, scores);
+  // Two pixels more: the peak search looks at neighbours, its refinement at theirs.
+  ComputeFastScores(image, {area.x - 2, area.y - 2, area.width + 4, area.height + 4}, scores);
   corners.clear();
   FindScorePeaks(scores, area, options_.min_fast_threshold, corners);
   KeepStrongPerCell(area, options_.cell_size_px, options_.fast_threshold, corners);
@@ -103,8 +105,10 @@ void OrbExtractor::ExtractLevel(int level, int quota, FrameFeatures& features) {
                               static_cast<float>(first.rows) / image.rows);
   for (const Corner& corner : chosen) {
     const float angle_rad = PatchOrientation(image, corner.x, corner.y);
-    // Pixel centres: half a pixel is half a pixel on every level.
-    const Eigen::Vector2f centre(corner.x + 0.5f, corner.y + 0.5f);
+    Eigen::Vector2f centre(corner.x, corner.y);
+    if (options_.subpixel) centre += RefineScorePeak(scores, corner.x, corner.y);
+    // The levels' corners coincide, not their first pixels' centres, which lie half a pixel inside.
+    centre += Eigen::Vector2f(0.5f, 0.5f);
     features.image_px.push_back(centre.cwiseProduct(scale) - Eigen::Vector2f(0.5f, 0.5f));
     features.angle_rad.push_back(angle_rad);
     features.level.push_back(static_cast<uint8_t>(level));

@@ -18,7 +18,7 @@ struct OrbOptions {
   int fast_threshold = 20;
   int min_fast_threshold = 7;
   int cell_size_px = 35;
-  bool subpixel = false;
+  bool subpixel = true;
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
