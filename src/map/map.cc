@@ -52,7 +52,6 @@ void Map::DropMap(MapId id) {
 void Map::MoveMap(MapId from, MapId to, const Rigid3d& T_to_from) {
   ++version_;
   const Rigid3d T_from_to = T_to_from.Inverse();
-  const Eigen::Matrix3d rotation = T_to_from.RotationMatrix();
   for (const auto& keyframe : keyframes_) {
     if (!keyframe || keyframe->map_id != from) continue;
     keyframe->T_cw = keyframe->T_cw * T_from_to;
@@ -60,11 +59,17 @@ void Map::MoveMap(MapId from, MapId to, const Rigid3d& T_to_from) {
   }
   for (const auto& point : points_) {
     if (!point || point->map_id != from) continue;
-    point->p_w = T_to_from * point->p_w;
-    point->normal = rotation * point->normal;
+    MovePoint(point->id, T_to_from);
     point->map_id = to;
   }
   if (active_map_ == from) active_map_ = to;
+}
+
+void Map::MovePoint(MapPointId id, const Rigid3d& motion) {
+  ++version_;
+  MapPoint& point = MutablePoint(id);
+  point.p_w = motion * point.p_w;
+  point.normal = motion.rotation() * point.normal;
 }
 
 std::vector<MapId> Map::MapIds() const {
@@ -164,6 +169,14 @@ MapId Map::MapOf(KeyFrameId id) const {
 
 // --- Graphs
 
+KeyFrameId Map::Predecessor(const KeyFrame& keyframe) const {
+  for (int64_t value = keyframe.id.value() - 1; value >= 0; --value) {
+    const KeyFrame* other = FindKeyFrame(KeyFrameId(value));
+    if (other && other->map_id == keyframe.map_id && tree_.Contains(other->id)) return other->id;
+  }
+  return KeyFrameId();
+}
+
 void Map::UpdateConnections(KeyFrameId id) {
   ++version_;
   const KeyFrame& keyframe = MutableKeyFrame(id);
@@ -183,7 +196,7 @@ void Map::UpdateConnections(KeyFrameId id) {
     if (count >= kMinSharedPoints || other == best) strong[other] = count;
   }
   covisibility_.SetEdges(id, strong);
-  if (!tree_.Contains(id)) tree_.Add(id, best);
+  if (!tree_.Contains(id)) tree_.Add(id, best.valid() ? best : Predecessor(keyframe));
 }
 
 }  // namespace msf

@@ -62,6 +62,8 @@ class Map {
   std::vector<MapPointId> PointIds(MapId map) const;
   int NumPoints(MapId map) const;
   void SetPosition(MapPointId id, const Eigen::Vector3d& p_w);
+  // Moves a point together with those who see it: p_new = motion * p_old.
+  void MovePoint(MapPointId id, const Rigid3d& motion);
   void SetStaticWeight(MapPointId id, float weight);
   // Connects a point and a feature; either may be taken already, then nothing happens and it returns false.
   bool AddObservation(MapPointId id, KeyFrameId keyframe, int feature);
@@ -81,7 +83,8 @@ class Map {
   // --- Graphs.
   const CovisibilityGraph& covisibility() const { return covisibility_; }
   const SpanningTree& tree() const { return tree_; }
-  // Recounts the shared points of a keyframe; the first time it also gets its place in the spanning tree.
+  // Recounts the shared points of a keyframe; the first time it also gets its place in the spanning tree: below the keyframe
+  // it shares most points with, or, sharing none, below the one before it.
   void UpdateConnections(KeyFrameId id);
   void AddLoopEdge(KeyFrameId a, KeyFrameId b) { tree_.AddLoopEdge(a, b); }
   void SetParent(KeyFrameId id, KeyFrameId parent) { tree_.SetParent(id, parent); }
@@ -96,6 +99,8 @@ class Map {
   KeyFrame& MutableKeyFrame(KeyFrameId id);
   MapPoint& MutablePoint(MapPointId id);
   const CulledKeyFrame* FindCulled(KeyFrameId id) const;
+  // The keyframe that joined the same map before this one; invalid for the first.
+  KeyFrameId Predecessor(const KeyFrame& keyframe) const;
   // The keyframe, or the one that carries it after culling; nullptr when its map was dropped.
   const KeyFrame* Carrier(KeyFrameId id) const;
 
