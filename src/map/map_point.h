@@ -30,6 +30,8 @@ struct MapPoint {
   KeyFrameId reference;                     // the keyframe whose distance defines the range
   std::vector<Observation> observations;    // ascending by keyframe
 
+  // How well the place is known: an observation with depth counts twice, as the virtual second camera saw it too.
+  int observation_strength = 0;
   int visible_count = 1;  // frames in which it should have been seen
   int found_count = 1;    // frames in which it was
   double FoundRatio() const { return static_cast<double>(found_count) / visible_count; }

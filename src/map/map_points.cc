@@ -6,6 +6,11 @@
 #include "util/check.h"
 
 namespace msf {
+namespace {
+
+int Strength(const KeyFrame& keyframe, int feature) { return keyframe.features->HasDepth(feature) ? 2 : 1; }
+
+}  // namespace
 
 MapPointId Map::AddPoint(const Eigen::Vector3d& p_w, KeyFrameId first_keyframe, int feature) {
   ++version_;
@@ -67,6 +72,7 @@ bool Map::AddObservation(MapPointId id, KeyFrameId keyframe_id, int feature) {
   ++version_;
   keyframe.points[feature] = id;
   point.observations.insert(place, {keyframe_id, feature});
+  point.observation_strength += Strength(keyframe, feature);
   return true;
 }
 
@@ -76,7 +82,9 @@ void Map::RemoveObservation(MapPointId id, KeyFrameId keyframe_id) {
                                   [&](const Observation& observation) { return observation.keyframe == keyframe_id; });
   if (place == point.observations.end()) return;
   ++version_;
-  MutableKeyFrame(keyframe_id).points[place->feature] = MapPointId();
+  KeyFrame& keyframe = MutableKeyFrame(keyframe_id);
+  keyframe.points[place->feature] = MapPointId();
+  point.observation_strength -= Strength(keyframe, place->feature);
   point.observations.erase(place);
   if (point.observations.size() < 2) {
     RemovePoint(id);

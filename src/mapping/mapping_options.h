@@ -9,7 +9,7 @@ namespace msf {
 
 struct MappingOptions {
   double min_found_ratio = 0.25;
-  int min_observations = 3;
+  int max_weak_strength = 3;
   int num_neighbours = 10;
   double max_parallax_cosine = 0.9998;
   double min_baselines = 1.0;
@@ -24,7 +24,8 @@ struct MappingOptions {
   template <typename Visitor>
   void Visit(Visitor& visit) {
     visit("min_found_ratio", min_found_ratio, "young points found less often than expected go");
-    visit("min_observations", min_observations, "young points need this many observers after two keyframes");
+    visit("max_weak_strength", max_weak_strength,
+          "young points go that after two keyframes have no more observations (one with depth counts twice)");
     visit("num_neighbours", num_neighbours, "covisible keyframes that a new one is triangulated and fused with");
     visit("max_parallax_cosine", max_parallax_cosine, "rays closer to parallel do not triangulate");
     visit("min_baselines", min_baselines, "keyframes closer together (in virtual baselines) do not triangulate");

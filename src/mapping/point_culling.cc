@@ -8,7 +8,7 @@ void RecentPoints::Cull(const MappingOptions& options, KeyFrameId newest, Map& m
     const MapPoint* point = map.FindPoint(id);
     if (!point) continue;
     const int64_t age = newest.value() - point->first_keyframe.value();
-    const bool few_observers = static_cast<int>(point->observations.size()) < options.min_observations;
+    const bool few_observers = point->observation_strength <= options.max_weak_strength;
     if (point->FoundRatio() < options.min_found_ratio || (age >= 2 && few_observers)) {
       map.RemovePoint(id);
     } else if (age < 3) {

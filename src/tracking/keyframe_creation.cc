@@ -61,11 +61,11 @@ KeyFrameId InsertKeyFrame(const TrackingContext& context, Frame& frame, Map& map
 KeyFrameEvidence GatherEvidence(const TrackingContext& context, const Map& map, const Frame& frame) {
   KeyFrameEvidence evidence;
   evidence.inliers = frame.NumPoints();
-  // Early on no point can have been seen three times.
-  const size_t min_observations = map.NumKeyFrames(map.active_map()) <= 2 ? 2 : 3;
+  // Early on no point can have been seen by two keyframes.
+  const int min_strength = map.NumKeyFrames(map.active_map()) <= 2 ? 2 : 3;
   if (const KeyFrame* reference = map.FindKeyFrame(frame.reference)) {
     for (const MapPointId id : reference->points) {
-      evidence.reference_points += id.valid() && map.FindPoint(id)->observations.size() >= min_observations;
+      evidence.reference_points += id.valid() && map.FindPoint(id)->observation_strength >= min_strength;
     }
   }
   const FrameFeatures& features = *frame.features;
