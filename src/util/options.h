@@ -8,7 +8,7 @@
 //     Status Check() const;   // a sentence when a value makes no sense
 //   };
 //
-// A field that has a Visit() of its own is a section. From that one list come reading YAML with unknown keys as errors,
+// A field that has a Visit() of its own is a section; a std::vector of such fields is a list of sections. From that one list come reading YAML with unknown keys as errors,
 // `--set section.key=value`, the resolved file next to every run's results, and the reference of all options.
 #pragma once
 
@@ -34,6 +34,11 @@ template <typename T>
 concept Section = requires(T options, AnyVisitor visitor) { options.Visit(visitor); };
 
 template <typename T>
+constexpr bool kIsSectionList = false;
+template <Section T>
+constexpr bool kIsSectionList<std::vector<T>> = true;
+
+template <typename T>
 std::string TypeName() {
   if constexpr (std::is_same_v<T, bool>) return "true or false";
   else if constexpr (std::is_integral_v<T>) return "a whole number";
@@ -53,9 +58,9 @@ class Reader {
     if (!status_.ok() || !node_[key]) return;
     const std::string path = path_.empty() ? key : path_ + "." + key;
     if constexpr (Section<T>) {
-      Reader section(node_[key], path);
-      if (node_[key].IsMap()) field.Visit(section);
-      status_ = node_[key].IsMap() ? section.Finish() : Status::Error("option '" + path + "' is a section and needs keys below it");
+      status_ = ReadSection(node_[key], path, field);
+    } else if constexpr (kIsSectionList<T>) {
+      ReadSectionList(node_[key], path, field);
     } else {
       try {
         field = node_[key].template as<T>();
@@ -68,6 +73,26 @@ class Reader {
   Status Finish() const;
 
  private:
+  template <typename T>
+  static Status ReadSection(const YAML::Node& node, const std::string& path, T& field) {
+    if (!node.IsMap()) return Status::Error("option '" + path + "' is a section and needs keys below it");
+    Reader section(node, path);
+    field.Visit(section);
+    return section.Finish();
+  }
+
+  template <typename T>
+  void ReadSectionList(const YAML::Node& node, const std::string& path, std::vector<T>& list) {
+    if (!node.IsSequence()) {
+      status_ = Status::Error("option '" + path + "' needs a list");
+      return;
+    }
+    list.assign(node.size(), T());
+    for (size_t i = 0; i < list.size() && status_.ok(); ++i) {
+      status_ = ReadSection(node[i], path + "[" + std::to_string(i) + "]", list[i]);
+    }
+  }
+
   YAML::Node node_;
   std::string path_;
   std::vector<std::string> known_;
@@ -82,6 +107,13 @@ class Writer {
       Writer section;
       field.Visit(section);
       node_[key] = section.node();
+    } else if constexpr (kIsSectionList<T>) {
+      node_[key] = YAML::Node(YAML::NodeType::Sequence);
+      for (auto& entry : field) {
+        Writer section;
+        entry.Visit(section);
+        node_[key].push_back(section.node());
+      }
     } else {
       node_[key] = field;
     }
@@ -101,6 +133,11 @@ class Describer {
     if constexpr (Section<T>) {
       Describer section(path);
       field.Visit(section);
+      text_ += section.text();
+    } else if constexpr (kIsSectionList<T>) {
+      typename T::value_type entry;
+      Describer section(path + "[]");
+      entry.Visit(section);
       text_ += section.text();
     } else {
       text_ += Line(path, YAML::Node(field), help);

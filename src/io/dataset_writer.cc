@@ -1,0 +1,128 @@
+#include "io/dataset_writer.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <opencv2/imgcodecs.hpp>
+#include <system_error>
+#include <utility>
+
+#include "util/atomic_file.h"
+#include "util/options.h"
+
+namespace msf {
+namespace fs = std::filesystem;
+namespace {
+
+Status SystemError(const fs::path& path, const std::string& what, const std::error_code& error) {
+  return Status::Error(fmt::format("{}: {}: {}", path.string(), what, error.message()));
+}
+
+// Whether `folder` may be replaced by a new data set.
+Status CheckReplaceable(const fs::path& folder, const std::string& marker) {
+  std::error_code error;
+  if (!fs::exists(folder, error)) return Status::Ok();
+  const bool is_folder = fs::is_directory(folder, error);
+  if (is_folder && (fs::is_empty(folder, error) || fs::exists(folder / marker, error)))
+    return Status::Ok();
+  return Status::Error(
+      fmt::format("{}: exists and was not made by this command (it holds no {}); choose another "
+                  "folder or remove it",
+                  folder.string(), marker));
+}
+
+}  // namespace
+
+StatusOr<DatasetWriter> DatasetWriter::Create(const fs::path& folder, const std::string& marker) {
+  // A trailing slash would make ".part" a file inside the folder.
+  const fs::path target = folder.has_filename() ? folder : folder.parent_path();
+  if (target.empty()) return Status::Error("the folder to write to has no name");
+  MSF_RETURN_IF_ERROR(CheckReplaceable(target, marker));
+  const fs::path part = target.string() + ".part";
+  MSF_RETURN_IF_ERROR(CheckReplaceable(part, marker));  // left over from a run that was killed
+  std::error_code error;
+  fs::remove_all(part, error);
+  for (const char* images : {"rgb", "depth"}) {
+    fs::create_directories(part / images, error);
+    if (error) return SystemError(part / images, "cannot be created", error);
+  }
+  MSF_RETURN_IF_ERROR(WriteFileAtomically(part / marker, ""));
+  return DatasetWriter(target, part);
+}
+
+DatasetWriter::DatasetWriter(fs::path folder, fs::path part)
+    : folder_(std::move(folder)),
+      part_(std::move(part)),
+      rgb_list_("# color images\n# timestamp filename\n"),
+      depth_list_("# depth images\n# timestamp filename\n"),
+      associations_("# timestamp rgb timestamp depth\n") {}
+
+DatasetWriter::DatasetWriter(DatasetWriter&& other) noexcept
+    : folder_(std::move(other.folder_)),
+      part_(std::exchange(other.part_, {})),
+      camera_yaml_(std::move(other.camera_yaml_)),
+      rgb_list_(std::move(other.rgb_list_)),
+      depth_list_(std::move(other.depth_list_)),
+      mask_list_(std::move(other.mask_list_)),
+      associations_(std::move(other.associations_)) {}
+
+DatasetWriter::~DatasetWriter() {
+  std::error_code ignored;
+  if (!part_.empty()) fs::remove_all(part_, ignored);
+}
+
+Status DatasetWriter::AddFrame(const RgbdFrame& frame, const cv::Mat& mask) {
+  MSF_RETURN_IF_ERROR(CheckFrame(frame));
+  const std::string stamp = fmt::format("{:.6f}", frame.time_s);
+  MSF_RETURN_IF_ERROR(WriteImage(frame.color, "rgb", stamp));
+  MSF_RETURN_IF_ERROR(WriteImage(frame.depth, "depth", stamp));
+  rgb_list_ += fmt::format("{0} rgb/{0}.png\n", stamp);
+  depth_list_ += fmt::format("{0} depth/{0}.png\n", stamp);
+  associations_ += fmt::format("{0} rgb/{0}.png {0} depth/{0}.png\n", stamp);
+  if (camera_yaml_.empty()) camera_yaml_ = YAML::Dump(OptionsToYaml(*frame.camera)) + "\n";
+  if (mask.empty()) return Status::Ok();
+  if (mask_list_.empty()) {
+    std::error_code error;
+    fs::create_directory(part_ / "mask", error);
+    if (error) return SystemError(part_ / "mask", "cannot be created", error);
+    mask_list_ = "# masks: 0 = static, else the number of the moving thing\n# timestamp filename\n";
+  }
+  mask_list_ += fmt::format("{0} mask/{0}.png\n", stamp);
+  return WriteImage(mask, "mask", stamp);
+}
+
+Status DatasetWriter::WriteImage(const cv::Mat& image, const std::string& folder,
+                                 const std::string& stamp) {
+  const std::string name = stamp + ".png";
+  std::vector<unsigned char> encoded;
+  // The lowest level: a third of the time for files that are a tenth larger.
+  if (!cv::imencode(".png", image, encoded, {cv::IMWRITE_PNG_COMPRESSION, 1})) {
+    return Status::Error(fmt::format("{}/{}: the picture cannot be encoded as PNG", folder, name));
+  }
+  return WriteFileAtomically(
+      part_ / folder / name,
+      std::string_view(reinterpret_cast<const char*>(encoded.data()), encoded.size()));
+}
+
+Status DatasetWriter::AddFile(const std::string& name, const std::string& text) {
+  return WriteFileAtomically(part_ / name, text);
+}
+
+Status DatasetWriter::Finish(const Trajectory& ground_truth) {
+  MSF_RETURN_IF_ERROR(AddFile("rgb.txt", rgb_list_));
+  MSF_RETURN_IF_ERROR(AddFile("depth.txt", depth_list_));
+  MSF_RETURN_IF_ERROR(AddFile("associations.txt", associations_));
+  MSF_RETURN_IF_ERROR(AddFile("camera.yaml", camera_yaml_));
+  if (!mask_list_.empty()) MSF_RETURN_IF_ERROR(AddFile("mask.txt", mask_list_));
+  MSF_RETURN_IF_ERROR(WriteTrajectory(part_ / "groundtruth.txt", ground_truth));
+  std::error_code error;
+  fs::remove_all(folder_, error);
+  if (error) return SystemError(folder_, "the old data set cannot be removed", error);
+  fs::rename(part_, folder_, error);
+  if (error) return SystemError(folder_, "the finished data set cannot be put there", error);
+  part_.clear();
+  return Status::Ok();
+}
+
+}  // namespace msf

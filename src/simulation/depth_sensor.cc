@@ -1,0 +1,122 @@
+#include "simulation/depth_sensor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+namespace msf {
+namespace {
+
+constexpr int kTile = 1024;  // side of the noise field, a power of two
+
+// A pixel is at an edge when a neighbour's disparity differs by more than this, px: more than any
+// slanted surface in view.
+constexpr float kEdgeDisparity_px = 1.0f;
+
+}  // namespace
+
+Status DepthSensorOptions::Check() const {
+  if (!(noise_per_m >= 0 && noise_per_m < 0.1))
+    return Status::Error("depth.noise_per_m must be in [0, 0.1)");
+  if (!(disparity_steps > 0)) return Status::Error("depth.disparity_steps must be positive");
+  if (!(nearest_m >= 0 && farthest_m > nearest_m))
+    return Status::Error("depth: farthest_m must exceed nearest_m >= 0");
+  if (!(edge_dropout >= 0 && edge_dropout <= 1))
+    return Status::Error("depth.edge_dropout must be in [0, 1]");
+  if (!(grazing_deg > 0 && grazing_deg <= 90))
+    return Status::Error("depth.grazing_deg must be in (0, 90]");
+  return Status::Ok();
+}
+
+DepthSensor::DepthSensor(const DepthSensorOptions& options, const Camera& camera, Random random)
+    : options_(options), camera_(camera), noise_(kTile, kTile, CV_32FC1) {
+  cv::RNG rng(random.Next());
+  rng.fill(noise_, cv::RNG::NORMAL, 0, 1);
+  cv::GaussianBlur(noise_, noise_, {5, 5}, 0.8, 0.8, cv::BORDER_WRAP & cv::BORDER_REFLECT);
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(noise_, mean, deviation);
+  noise_ = (noise_ - mean[0]) / deviation[0];
+}
+
+// The projector stands to the side of the camera by the baseline, so a surface point of disparity d
+// is lit by projector column x - d. Going from right to left, a column that something nearer has
+// taken already gets no light.
+void DepthSensor::FindShadow(const float* disparity, uint8_t* hidden) const {
+  float taken = std::numeric_limits<float>::max();
+  for (int x = camera_.width - 1; x >= 0; --x) {
+    const float column = static_cast<float>(x) - disparity[x];
+    hidden[x] = column > taken + 0.5f;
+    taken = std::min(taken, column);
+  }
+}
+
+void DepthSensor::MarkEdges(const cv::Mat& disparity, int y, uint8_t* edge) const {
+  const float* row = disparity.ptr<float>(y);
+  const float* above = disparity.ptr<float>(std::max(0, y - 1));
+  const float* below = disparity.ptr<float>(std::min(disparity.rows - 1, y + 1));
+  const int last = disparity.cols - 1;
+  for (int x = 1; x < last; ++x) {
+    const float d = row[x];
+    edge[x] = std::abs(row[x - 1] - d) > kEdgeDisparity_px ||
+              std::abs(row[x + 1] - d) > kEdgeDisparity_px ||
+              std::abs(above[x] - d) > kEdgeDisparity_px ||
+              std::abs(below[x] - d) > kEdgeDisparity_px;
+  }
+  edge[0] = edge[last] = 1;
+}
+
+cv::Mat DepthSensor::Measure(const RenderedView& view, Random random) const {
+  const int width = camera_.width, height = camera_.height;
+  const float bf = static_cast<float>(camera_.bf),
+              factor = static_cast<float>(camera_.depth_factor);
+  cv::Mat depth(height, width, CV_16UC1);
+  if (options_.perfect) {
+    view.depth_m.convertTo(depth, CV_16UC1, camera_.depth_factor);
+    return depth;
+  }
+  cv::Mat disparity(height, width, CV_32FC1);
+  for (int y = 0; y < height; ++y) {
+    const float* z = view.depth_m.ptr<float>(y);
+    float* d = disparity.ptr<float>(y);
+    for (int x = 0; x < width; ++x) d[x] = z[x] > 0 ? bf / z[x] : 0;
+  }
+  const float steps = static_cast<float>(options_.disparity_steps);
+  const float sigma_px = static_cast<float>(options_.noise_per_m) * bf;  // dz = z^2 / bf * dd
+  const float lowest = bf / static_cast<float>(options_.farthest_m),
+              highest = bf / std::max(0.01f, static_cast<float>(options_.nearest_m));
+  const float grazing = static_cast<float>(std::cos(options_.grazing_deg * std::numbers::pi / 180));
+  const int shift_x = random.Int(0, kTile - 1), shift_y = random.Int(0, kTile - 1);
+  std::vector<uint8_t> hidden(width, 0), edge(width);
+  for (int y = 0; y < height; ++y) {
+    const float* d_row = disparity.ptr<float>(y);
+    const float* cosine = view.cosine.ptr<float>(y);
+    const float* noise = noise_.ptr<float>((y + shift_y) % kTile);
+    uint16_t* out = depth.ptr<uint16_t>(y);
+    if (options_.shadow) FindShadow(d_row, hidden.data());
+    MarkEdges(disparity, y, edge.data());
+    for (int x = 0; x < width; ++x) {
+      out[x] = 0;
+      if (hidden[x]) continue;
+      float d = d_row[x];
+      if (edge[x]) {
+        // The matching window sees both sides: either none or a neighbour's depth comes out.
+        if (random.Chance(options_.edge_dropout)) continue;
+        const int neighbor_x = std::clamp(x + random.Int(-1, 1), 0, width - 1);
+        d = disparity.at<float>(std::clamp(y + random.Int(-1, 1), 0, height - 1), neighbor_x);
+      }
+      if (d <= 0) continue;
+      if (cosine[x] < grazing && random.Chance(1.2 * (1 - cosine[x] / grazing))) continue;
+      d += sigma_px * noise[(x + shift_x) % kTile];
+      d = std::floor(d * steps + 0.5f) / steps;
+      if (d < lowest || d > highest) continue;
+      out[x] = static_cast<uint16_t>(std::min(65535.f, bf / d * factor + 0.5f));
+    }
+  }
+  return depth;
+}
+
+}  // namespace msf

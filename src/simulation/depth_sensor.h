@@ -1,0 +1,57 @@
+// From perfect depth to what a structured-light camera of the Kinect kind delivers.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+
+#include "sensor/camera.h"
+#include "simulation/random.h"
+#include "simulation/renderer.h"
+#include "util/status.h"
+
+namespace msf {
+
+struct DepthSensorOptions {
+  bool perfect = false;
+  double noise_per_m = 0.0015;
+  double disparity_steps = 8;
+  double nearest_m = 0.45;
+  double farthest_m = 5.0;
+  double edge_dropout = 0.35;
+  bool shadow = true;
+  double grazing_deg = 78;
+
+  template <typename Visitor>
+  void Visit(Visitor& visit) {
+    visit("perfect", perfect, "true: exact depth, rounded to the image's unit only");
+    visit("noise_per_m", noise_per_m, "axial noise: standard deviation = noise_per_m * z^2, m");
+    visit("disparity_steps", disparity_steps, "disparity is measured in steps of 1 / this, px");
+    visit("nearest_m", nearest_m, "nothing is measured nearer, m");
+    visit("farthest_m", farthest_m, "nothing is measured farther, m");
+    visit("edge_dropout", edge_dropout, "share of pixels at depth edges without depth");
+    visit("shadow", shadow, "no depth where the projector is hidden by something nearer");
+    visit("grazing_deg", grazing_deg,
+          "surfaces seen at more than this angle from their normal fade out");
+  }
+  Status Check() const;
+};
+
+// Noise model after Khoshelham and Elberink 2012 (error grows with z^2, disparity is quantised) and
+// Nguyen, Izadi and Lovell 2012 (lateral noise of about a pixel at edges, loss at grazing angles).
+class DepthSensor {
+ public:
+  DepthSensor(const DepthSensorOptions& options, const Camera& camera, Random random);
+
+  // 16-bit depth image of a rendered view; `random` makes this frame's noise.
+  cv::Mat Measure(const RenderedView& view, Random random) const;
+
+ private:
+  struct Row;
+  void FindShadow(const float* disparity, uint8_t* hidden) const;
+  void MarkEdges(const cv::Mat& disparity, int y, uint8_t* edge) const;
+
+  DepthSensorOptions options_;
+  Camera camera_;
+  cv::Mat noise_;  // standard normal, neighbours alike: matching windows overlap
+};
+
+}  // namespace msf

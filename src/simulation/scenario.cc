@@ -1,0 +1,69 @@
+#include "simulation/scenario.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "sensor/camera.h"
+#include "simulation/embedded_scenarios.h"
+#include "simulation/world.h"
+#include "util/options.h"
+
+namespace msf {
+
+Status Scenario::Check() const {
+  const std::vector<std::string> worlds = WorldNames();
+  if (std::find(worlds.begin(), worlds.end(), world) == worlds.end()) {
+    return Status::Error(
+        fmt::format("world is '{}'; known are {}", world, fmt::join(worlds, ", ")));
+  }
+  const StatusOr<Camera> preset = Camera::Preset(camera);
+  if (!preset.ok()) return preset.status();
+  if (!(fps > 0 && duration_s * fps >= 1))
+    return Status::Error("duration_s and fps must give at least one frame");
+  if (!(time_jitter_s >= 0 && time_jitter_s * 8 < 1 / fps)) {
+    return Status::Error(
+        "time_jitter_s must be below an eighth of the frame time, or frames would change places");
+  }
+  for (const Blackout& blackout : blackouts) {
+    if (!(blackout.to_s > blackout.from_s))
+      return Status::Error("blackouts: to_s must be after from_s");
+  }
+  for (size_t i = 1; i < jumps.size(); ++i) {
+    if (!(jumps[i].time_s > jumps[i - 1].time_s))
+      return Status::Error("jumps must be in order of time_s");
+  }
+  MSF_RETURN_IF_ERROR(path.Check());
+  MSF_RETURN_IF_ERROR(color.Check());
+  return depth.Check();
+}
+
+StatusOr<Scenario> LoadScenario(const std::string& name_or_file) {
+  Scenario scenario;
+  scenario.name = std::filesystem::path(name_or_file).stem().string();
+  const auto known = EmbeddedScenarios().find(name_or_file);
+  Status status;
+  if (known != EmbeddedScenarios().end()) {
+    status = ReadOptions(YAML::Load(known->second), scenario);
+  } else if (std::filesystem::is_regular_file(name_or_file)) {
+    MSF_RETURN_IF_ERROR(LoadOptions(name_or_file, scenario));
+  } else {
+    return Status::Error(
+        fmt::format("'{}' is neither a scenario file nor a known scenario; known are {}",
+                    name_or_file, fmt::join(ScenarioNames(), ", ")));
+  }
+  if (status.ok()) status = scenario.Check();
+  if (!status.ok())
+    return Status::Error(fmt::format("scenario {}: {}", name_or_file, status.message()));
+  return scenario;
+}
+
+std::vector<std::string> ScenarioNames() {
+  std::vector<std::string> names;
+  for (const auto& [name, text] : EmbeddedScenarios()) names.push_back(name);
+  return names;
+}
+
+}  // namespace msf

@@ -1,0 +1,144 @@
+#include "simulation/simulator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <utility>
+
+#include "simulation/camera_path.h"
+#include "simulation/renderer.h"
+#include "simulation/world.h"
+
+namespace msf {
+namespace {
+
+// Keys of the random streams that belong to a seed.
+enum Stream : uint64_t { kWorld = 1, kPath, kColor, kDepth, kTimes, kFrames };
+
+}  // namespace
+
+struct Simulator::Parts {
+  Parts(const Scenario& scenario_in, const Camera& camera_in, Scene scene_in, Random random_in)
+      : scenario(scenario_in),
+        random(random_in),
+        camera(std::make_shared<const Camera>(camera_in)),
+        scene(std::move(scene_in)),
+        path(scenario.path, random.Fork(kPath)),
+        renderer(scene, *camera),
+        color_sensor(scenario.color, *camera, random.Fork(kColor)),
+        depth_sensor(scenario.depth, *camera, random.Fork(kDepth)) {}
+
+  Scenario scenario;
+  Random random;
+  std::shared_ptr<const Camera> camera;
+  Scene scene;
+  CameraPath path;
+  Renderer renderer;
+  ColorSensor color_sensor;
+  DepthSensor depth_sensor;
+
+  bool IsBlack(double elapsed_s) const;
+  RenderedView RenderView(double time_s);
+  Rigid3d PoseAt(double time_s) const;
+};
+
+bool Simulator::Parts::IsBlack(double elapsed_s) const {
+  for (const Blackout& blackout : scenario.blackouts) {
+    if (elapsed_s >= blackout.from_s && elapsed_s < blackout.to_s) return true;
+  }
+  return false;
+}
+
+Rigid3d Simulator::Parts::PoseAt(double time_s) const {
+  const double elapsed_s = time_s - scenario.start_time_s;
+  double path_time_s = elapsed_s;
+  for (const Jump& jump : scenario.jumps) {
+    if (elapsed_s >= jump.time_s) path_time_s = jump.path_time_s + elapsed_s - jump.time_s;
+  }
+  return path.PoseAt(path_time_s);
+}
+
+RenderedView Simulator::Parts::RenderView(double time_s) {
+  RenderedView view = renderer.Render(PoseAt(time_s).Inverse(), {}, false);
+  const int samples = scenario.color.blur_samples;
+  if (samples == 1) return view;
+  // Motion blur: the mean of pictures spread evenly over the exposure, whose middle is the frame's
+  // time.
+  view.color.setTo(0);
+  for (int i = 0; i < samples; ++i) {
+    const double offset_s = scenario.color.shutter_s * ((i + 0.5) / samples - 0.5);
+    view.color += renderer.Render(PoseAt(time_s + offset_s).Inverse(), {}, true).color;
+  }
+  view.color *= 1.0 / samples;
+  return view;
+}
+
+StatusOr<Simulator> Simulator::Create(const Scenario& scenario, uint64_t seed) {
+  MSF_RETURN_IF_ERROR(scenario.Check());
+  StatusOr<Camera> camera = Camera::Preset(scenario.camera);
+  if (!camera.ok()) return camera.status();
+  camera->fps = scenario.fps;
+  const Random random(seed);
+  StatusOr<Scene> scene = BuildWorld(scenario.world, random.Fork(kWorld).Next());
+  if (!scene.ok()) return scene.status();
+  return Simulator(std::make_unique<Parts>(scenario, *camera, *std::move(scene), random));
+}
+
+Simulator::Simulator(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Simulator::Simulator(Simulator&&) noexcept = default;
+Simulator& Simulator::operator=(Simulator&&) noexcept = default;
+Simulator::~Simulator() = default;
+
+int Simulator::num_frames() const {
+  return static_cast<int>(parts_->scenario.duration_s * parts_->scenario.fps + 1e-9);
+}
+
+const Camera& Simulator::camera() const { return *parts_->camera; }
+const Scenario& Simulator::scenario() const { return parts_->scenario; }
+
+double Simulator::TimeOf(int index) const {
+  Random jitter = parts_->random.Fork(kTimes).Fork(static_cast<uint64_t>(index));
+  const Scenario& scenario = parts_->scenario;
+  const double offset_s = std::clamp(jitter.Normal(), -3., 3.) * scenario.time_jitter_s;
+  const double time_s = scenario.start_time_s + index / scenario.fps + (index == 0 ? 0 : offset_s);
+  return std::round(time_s * 1e6) / 1e6;  // what a file keeps
+}
+
+Rigid3d Simulator::PoseAt(double time_s) const { return parts_->PoseAt(time_s); }
+
+SimulatedFrame Simulator::Render(int index) {
+  MSF_CHECK(index >= 0 && index < num_frames(), "no such frame");
+  RgbdFrame frame;
+  frame.id = FrameId(index);
+  frame.time_s = TimeOf(index);
+  frame.camera = parts_->camera;
+  SimulatedFrame result;
+  result.T_wc = PoseAt(frame.time_s);
+  if (parts_->IsBlack(frame.time_s - parts_->scenario.start_time_s)) {
+    frame.color = cv::Mat::zeros(camera().height, camera().width, CV_8UC3);
+    frame.depth = cv::Mat::zeros(camera().height, camera().width, CV_16UC1);
+    result.mask = cv::Mat::zeros(camera().height, camera().width, CV_8UC1);
+  } else {
+    const RenderedView view = parts_->RenderView(frame.time_s);
+    const Random noise = parts_->random.Fork(kFrames).Fork(static_cast<uint64_t>(index));
+    frame.color = parts_->color_sensor.Expose(
+        view.color, frame.time_s - parts_->scenario.start_time_s, noise.Fork(1));
+    frame.depth = parts_->depth_sensor.Measure(view, noise.Fork(2));
+    result.mask = view.label;
+  }
+  result.frame = std::make_shared<const RgbdFrame>(std::move(frame));
+  return result;
+}
+
+Trajectory Simulator::GroundTruth() const {
+  Trajectory trajectory;
+  const double start_s = parts_->scenario.start_time_s, end_s = TimeOf(num_frames() - 1);
+  const int count = static_cast<int>(std::ceil((end_s - start_s) * 100)) + 1;
+  for (int i = -1; i <= count; ++i) {
+    const double time_s = start_s + 0.01 * i;
+    trajectory.push_back({time_s, PoseAt(time_s)});
+  }
+  return trajectory;
+}
+
+}  // namespace msf
