@@ -14,8 +14,8 @@ namespace msf {
 struct EvaluationOptions {
   ScaleEstimation scale = ScaleEstimation::kFixed;
   double max_gap_s = kMaxAssociationGap_s;
-  std::optional<size_t>
-      num_input_frames;  // frames that the system was given; without it there is no coverage
+  // Frames that the system was given; without it there is no coverage.
+  std::optional<size_t> num_input_frames = std::nullopt;
 };
 
 struct Evaluation {

@@ -31,6 +31,37 @@ StatusOr<Camera> FindCamera(const fs::path& folder, const std::string& camera) {
                   folder.string(), kCamera, fmt::join(Camera::PresetNames(), ", ")));
 }
 
+// The frames of a folder by its lists, in order of time.
+StatusOr<std::vector<FrameFiles>> ReadLists(const fs::path& folder,
+                                            std::vector<std::string>& warnings) {
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored))
+    return Status::Error(folder.string() + ": there is no such folder");
+  if (fs::exists(folder / kAssociations)) {
+    return ReadAssociations(folder / kAssociations, warnings);
+  }
+  if (!fs::exists(folder / "rgb.txt") || !fs::exists(folder / "depth.txt")) {
+    return Status::Error(
+        folder.string() +
+        ": is no data set in TUM layout: it needs rgb.txt and depth.txt, or associations.txt");
+  }
+  StatusOr<std::vector<ListedImage>> color = ReadImageList(folder / "rgb.txt", warnings);
+  if (!color.ok()) return color.status();
+  StatusOr<std::vector<ListedImage>> depth = ReadImageList(folder / "depth.txt", warnings);
+  if (!depth.ok()) return depth.status();
+  std::vector<FrameFiles> frames = AssociateByTime(*color, *depth);
+  if (frames.empty()) {
+    return Status::Error(fmt::format("{}: no colour image has a depth image within {} s",
+                                     folder.string(), kMaxColorDepthGap_s));
+  }
+  if (const size_t num_alone = color->size() - frames.size(); num_alone > 0) {
+    warnings.push_back(
+        fmt::format("{}: {} of {} colour images have no depth image within {} s and are left out",
+                    folder.string(), num_alone, color->size(), kMaxColorDepthGap_s));
+  }
+  return frames;
+}
+
 }  // namespace
 
 StatusOr<Camera> ReadCamera(const std::string& name_or_file) {
@@ -48,45 +79,23 @@ StatusOr<Camera> ReadCamera(const std::string& name_or_file) {
   return camera;
 }
 
+StatusOr<size_t> CountFrames(const fs::path& folder) {
+  std::vector<std::string> warnings;
+  StatusOr<std::vector<FrameFiles>> frames = ReadLists(folder, warnings);
+  if (!frames.ok()) return frames.status();
+  return frames->size();
+}
+
 StatusOr<TumDataset> TumDataset::Open(const fs::path& folder, const std::string& camera) {
-  std::error_code ignored;
-  if (!fs::is_directory(folder, ignored))
-    return Status::Error(folder.string() + ": there is no such folder");
   TumDataset dataset;
   dataset.folder_ = folder;
-  MSF_RETURN_IF_ERROR(dataset.ReadLists());
+  StatusOr<std::vector<FrameFiles>> frames = ReadLists(folder, dataset.warnings_);
+  if (!frames.ok()) return frames.status();
+  dataset.frames_ = std::move(*frames);
   StatusOr<Camera> found = FindCamera(folder, camera);
   if (!found.ok()) return found.status();
   dataset.camera_ = std::make_shared<const Camera>(*found);
   return dataset;
-}
-
-Status TumDataset::ReadLists() {
-  if (fs::exists(folder_ / kAssociations)) {
-    StatusOr<std::vector<FrameFiles>> frames = ReadAssociations(folder_ / kAssociations, warnings_);
-    if (frames.ok()) frames_ = std::move(*frames);
-    return frames.status();
-  }
-  if (!fs::exists(folder_ / "rgb.txt") || !fs::exists(folder_ / "depth.txt")) {
-    return Status::Error(
-        folder_.string() +
-        ": is no data set in TUM layout: it needs rgb.txt and depth.txt, or associations.txt");
-  }
-  StatusOr<std::vector<ListedImage>> color = ReadImageList(folder_ / "rgb.txt", warnings_);
-  if (!color.ok()) return color.status();
-  StatusOr<std::vector<ListedImage>> depth = ReadImageList(folder_ / "depth.txt", warnings_);
-  if (!depth.ok()) return depth.status();
-  frames_ = AssociateByTime(*color, *depth);
-  if (frames_.empty()) {
-    return Status::Error(fmt::format("{}: no colour image has a depth image within {} s",
-                                     folder_.string(), kMaxColorDepthGap_s));
-  }
-  if (const size_t num_alone = color->size() - frames_.size(); num_alone > 0) {
-    warnings_.push_back(
-        fmt::format("{}: {} of {} colour images have no depth image within {} s and are left out",
-                    folder_.string(), num_alone, color->size(), kMaxColorDepthGap_s));
-  }
-  return Status::Ok();
 }
 
 StatusOr<RgbdFramePtr> TumDataset::Load(size_t index) {

@@ -17,6 +17,9 @@ namespace msf {
 // The camera that `name_or_file` means: a preset's name or a YAML file with the keys of Camera.
 StatusOr<Camera> ReadCamera(const std::string& name_or_file);
 
+// The number of frames in a data set's folder, whatever its camera is.
+StatusOr<size_t> CountFrames(const std::filesystem::path& folder);
+
 // A folder with rgb.txt and depth.txt, or associations.txt (which is preferred). Opening reads the
 // lists only. Used by one thread at a time.
 class TumDataset {
@@ -45,7 +48,6 @@ class TumDataset {
 
  private:
   TumDataset() = default;
-  Status ReadLists();
 
   std::filesystem::path folder_;
   std::shared_ptr<const Camera> camera_;
