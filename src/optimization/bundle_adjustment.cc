@@ -85,8 +85,8 @@ double BundlePass::Cost(const BundleState& state) const {
   double cost = 0;
   for (const BundleLayout::Place& place : layout_.places) {
     const BundleObservation& observation = problem_.observations[place.observation];
-    const double chi2 =
-        ReprojectionChi2(camera_, state.InCamera(observation.pose, observation.point), observation);
+    const Eigen::Vector3d p_c = state.InCamera(observation.pose, observation.point);
+    const double chi2 = ResidualChi2(ReprojectionResidual(camera_, p_c, observation), observation);
     cost += ObservationCost(observation, chi2, gates_.For(observation), robust_);
   }
   return cost;

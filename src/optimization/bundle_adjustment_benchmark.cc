@@ -1,6 +1,7 @@
 #include <benchmark/benchmark.h>
 
 #include "optimization/bundle_adjustment.h"
+#include "optimization/test_ceres_bundle.h"
 #include "optimization/test_scene.h"
 
 namespace msf {
@@ -33,6 +34,17 @@ void Run(benchmark::State& state, const BundleProblem& problem) {
 // After a keyframe: its neighbours and their points, other observers fixed.
 void BM_LocalBundle(benchmark::State& state) { Run(state, MakeProblem(35, 15, 2000, 8)); }
 BENCHMARK(BM_LocalBundle)->Unit(benchmark::kMillisecond);
+
+// The same with Ceres, which has no second pass here.
+void BM_LocalBundleCeres(benchmark::State& state) {
+  const Camera camera = TestCamera();
+  const BundleProblem problem = MakeProblem(35, 15, 2000, 8);
+  for (auto _ : state) {
+    BundleProblem copy = problem;
+    benchmark::DoNotOptimize(SolveBundleWithCeres(camera, copy, {}, /*robust=*/true, 10));
+  }
+}
+BENCHMARK(BM_LocalBundleCeres)->Unit(benchmark::kMillisecond);
 
 // After a loop: everything.
 void BM_FullBundle(benchmark::State& state) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "optimization/test_ceres_bundle.h"
 #include "optimization/test_scene.h"
 
 namespace msf {
@@ -80,6 +81,27 @@ TEST(BundleAdjustment, FixedPosesAndPointsStay) {
   }
   for (size_t i = 0; i < problem.points.size(); ++i) {
     EXPECT_EQ(problem.points[i].p_w == before.points[i].p_w, problem.points[i].fixed) << i;
+  }
+}
+
+// Ceres' Huber counts rows of one residual block together, as ours does: the minima are the same.
+TEST(BundleAdjustment, AgreesWithCeres) {
+  for (const bool robust : {false, true}) {
+    BundleProblem ours = MakeTestProblem(
+        TestCamera(), {.noise_px = 1, .depth_share = 0.7, .outlier_share = robust ? 0.05 : 0});
+    ours.poses[0].fixed = ours.poses[1].fixed = true;
+    for (size_t i = 0; i < ours.points.size(); i += 10) ours.points[i].fixed = true;
+    for (size_t i = 0; i < ours.observations.size(); i += 5) ours.observations[i].weight = 0.3;
+    Perturb(ours, 0.003, 0.01, 3);
+    BundleProblem ceres = ours;
+    BundleOptions options = Exact();
+    options.robust_iterations = robust ? 100 : 0;
+    options.final_iterations = robust ? 0 : 100;
+    if (!robust) options.chi2_two = options.chi2_three = 1e9;  // keep everything
+    SolveBundle(TestCamera(), ours, options);
+    SolveBundleWithCeres(TestCamera(), ceres, options, robust, 200);
+    EXPECT_LT(MaxPoseError(ours, ceres), 1e-6) << robust;
+    EXPECT_LT(MedianPointError_m(ours, ceres), 1e-6) << robust;
   }
 }
 

@@ -42,41 +42,51 @@ struct Chi2Gates {
   }
 };
 
-// A point nearer to the camera plane than this has no projection: its residual would change so
-// wildly that a single wrong match could hold the pose in place, m.
+// A point nearer to the camera plane than this cannot have been seen, m. It is no inlier, and in
+// costs it counts as if it stood at this depth: the cost stays finite and continuous, so that a
+// wrong match on the camera plane neither holds a pose in place nor gains by slipping behind the
+// camera.
 inline constexpr double kMinProjectionDepth_m = 0.1;
-// No observation costs more than one with this chi^2, and an impossible projection costs as much:
-// no step gains by pushing points behind the camera, and none is refused because a wrong match
-// crosses the camera plane.
-inline constexpr double kMaxChi2 = 1e6;
 
-// Predicted minus measured (u, v, d) in px; d is 0 without depth. `p_c` needs z >=
-// kMinProjectionDepth_m.
+// Predicted minus measured (u, v, d) in px; d is 0 without depth.
 inline Eigen::Vector3d ReprojectionResidual(const Camera& camera, const Eigen::Vector3d& p_c,
                                             const ImageObservation& observation) {
-  const double inv_z = 1 / p_c.z();
+  const double inv_z = 1 / std::max(p_c.z(), kMinProjectionDepth_m);
   return {camera.fx * p_c.x() * inv_z + camera.cx - observation.uv_px.x(),
           camera.fy * p_c.y() * inv_z + camera.cy - observation.uv_px.y(),
           observation.HasDepth() ? camera.bf * inv_z - observation.disparity_px : 0};
 }
 
-// Derivative of (u, v, d) by the point in camera coordinates, px/m.
-inline Eigen::Matrix3d ReprojectionJacobian(const Camera& camera, const Eigen::Vector3d& p_c) {
-  const double inv_z = 1 / p_c.z(), inv_z2 = inv_z * inv_z;
-  Eigen::Matrix3d jacobian;
-  jacobian << camera.fx * inv_z, 0, -camera.fx * p_c.x() * inv_z2,  //
-      0, camera.fy * inv_z, -camera.fy * p_c.y() * inv_z2,          //
-      0, 0, -camera.bf * inv_z2;
-  return jacobian;
+// Derivative of the residual by the point, px/m: rows (a, 0, c), (0, b, d), (0, 0, e).
+// (e belongs to observations with depth only).
+struct ReprojectionJacobian {
+  double a, b, c, d, e;
+
+  ReprojectionJacobian(const Camera& camera, const Eigen::Vector3d& p_c) {
+    const double inv_z = 1 / std::max(p_c.z(), kMinProjectionDepth_m);
+    const double by_z = p_c.z() > kMinProjectionDepth_m ? -inv_z * inv_z : 0;
+    a = camera.fx * inv_z;
+    b = camera.fy * inv_z;
+    c = camera.fx * p_c.x() * by_z;
+    d = camera.fy * p_c.y() * by_z;
+    e = camera.bf * by_z;
+  }
+  Eigen::Matrix3d Matrix() const {
+    return (Eigen::Matrix3d() << a, 0, c, 0, b, d, 0, 0, e).finished();
+  }
+};
+
+// Squared residual over variance.
+inline double ResidualChi2(const Eigen::Vector3d& residual, const ImageObservation& observation) {
+  return observation.inv_sigma2 * residual.head<2>().squaredNorm() +
+         observation.inv_sigma2_disparity * residual.z() * residual.z();
 }
 
-// Squared residual over variance; infinite for a point at or behind the camera plane.
+// The same for a point; infinite when it lies at or behind the camera plane.
 inline double ReprojectionChi2(const Camera& camera, const Eigen::Vector3d& p_c,
                                const ImageObservation& observation) {
   if (!(p_c.z() >= kMinProjectionDepth_m)) return std::numeric_limits<double>::infinity();
-  const Eigen::Vector3d r = ReprojectionResidual(camera, p_c, observation);
-  return observation.inv_sigma2 * r.head<2>().squaredNorm() +
-         observation.inv_sigma2_disparity * r.z() * r.z();
+  return ResidualChi2(ReprojectionResidual(camera, p_c, observation), observation);
 }
 
 // Huber's kernel on chi^2 with its knee at `gate`: rho(s) = s below, 2 sqrt(gate s) - gate above.
@@ -91,34 +101,28 @@ inline double HuberWeight(double chi2, double gate) {
 // weight * rho(chi^2), or weight * chi^2 when the kernel is off.
 inline double ObservationCost(const ImageObservation& observation, double chi2, double gate,
                               bool robust) {
-  const double bounded = std::min(chi2, kMaxChi2);
-  return observation.weight * (robust ? HuberCost(bounded, gate) : bounded);
+  return observation.weight * (robust ? HuberCost(chi2, gate) : chi2);
 }
 
 // How one observation pulls on its point in camera coordinates: cost, Gauss-Newton gradient J^T W r
-// and information J^T W J (robust and static weight included). An impossible projection costs but
-// does not pull.
+// and information J^T W J (robust and static weight included).
 struct PointPull {
-  double cost = 0;
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  double cost;
+  Eigen::Vector3d gradient;
+  Eigen::Matrix3d information;
 };
 
 inline PointPull PullOnPoint(const Camera& camera, const Eigen::Vector3d& p_c,
                              const ImageObservation& observation, double gate, bool robust) {
-  PointPull pull;
-  const double chi2 = ReprojectionChi2(camera, p_c, observation);
-  pull.cost = ObservationCost(observation, chi2, gate, robust);
-  if (!std::isfinite(chi2)) return pull;
   const Eigen::Vector3d r = ReprojectionResidual(camera, p_c, observation);
+  const double chi2 = ResidualChi2(r, observation);
   const double scale = observation.weight * (robust ? HuberWeight(chi2, gate) : 1);
   const double w = scale * observation.inv_sigma2;
   const double w_d = observation.HasDepth() ? scale * observation.inv_sigma2_disparity : 0;
-  // Rows of ReprojectionJacobian: (a, 0, c), (0, b, d), (0, 0, e).
-  const double inv_z = 1 / p_c.z();
-  const double a = camera.fx * inv_z, b = camera.fy * inv_z;
-  const double c = -a * p_c.x() * inv_z, d = -b * p_c.y() * inv_z, e = -camera.bf * inv_z * inv_z;
+  const auto [a, b, c, d, e] = ReprojectionJacobian(camera, p_c);
   const double ac = w * a * c, bd = w * b * d;
+  PointPull pull;
+  pull.cost = ObservationCost(observation, chi2, gate, robust);
   pull.gradient << w * a * r.x(), w * b * r.y(), w * (c * r.x() + d * r.y()) + w_d * e * r.z();
   pull.information << w * a * a, 0, ac, 0, w * b * b, bd, ac, bd, w * (c * c + d * d) + w_d * e * e;
   return pull;

@@ -19,16 +19,17 @@ ImageObservation SomeObservation(bool with_depth) {
 
 TEST(Reprojection, JacobianAgreesWithDifferences) {
   const Camera camera = TestCamera();
-  const Eigen::Vector3d p_c(0.4, -0.3, 1.9);
-  const Eigen::Matrix3d jacobian = ReprojectionJacobian(camera, p_c);
-  constexpr double kStep = 1e-6;
-  for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(k);
-    const Eigen::Vector3d numeric =
-        (ReprojectionResidual(camera, p_c + step, SomeObservation(true)) -
-         ReprojectionResidual(camera, p_c - step, SomeObservation(true))) /
-        (2 * kStep);
-    EXPECT_LT((numeric - jacobian.col(k)).norm(), 1e-6 * (1 + numeric.norm())) << k;
+  for (const double z_m : {1.9, 0.05, -1.0}) {
+    const Eigen::Vector3d p_c(0.4, -0.3, z_m);
+    const Eigen::Matrix3d jacobian = ReprojectionJacobian(camera, p_c).Matrix();
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d step = 1e-6 * Eigen::Vector3d::Unit(k);
+      const Eigen::Vector3d numeric =
+          (ReprojectionResidual(camera, p_c + step, SomeObservation(true)) -
+           ReprojectionResidual(camera, p_c - step, SomeObservation(true))) /
+          2e-6;
+      EXPECT_LT((numeric - jacobian.col(k)).norm(), 1e-6 * (1 + numeric.norm())) << z_m << " " << k;
+    }
   }
 }
 
@@ -60,7 +61,7 @@ TEST(Reprojection, PullInformationIsThatOfTheJacobian) {
   const Eigen::Vector3d p_c(-0.1, -0.2, 1.9);
   for (const bool with_depth : {false, true}) {
     const ImageObservation observation = SomeObservation(with_depth);
-    const Eigen::Matrix3d jacobian = ReprojectionJacobian(camera, p_c);
+    const Eigen::Matrix3d jacobian = ReprojectionJacobian(camera, p_c).Matrix();
     const Eigen::Vector3d information =
         observation.weight * Eigen::Vector3d(observation.inv_sigma2, observation.inv_sigma2,
                                              with_depth ? observation.inv_sigma2_disparity : 0);
@@ -77,12 +78,16 @@ TEST(Reprojection, HuberIsSmoothAtItsKnee) {
   EXPECT_NEAR((HuberCost(40.001, 6) - HuberCost(39.999, 6)) / 0.002, HuberWeight(40, 6), 1e-6);
 }
 
-TEST(Reprojection, BehindTheCameraCostsButDoesNotPull) {
-  const PointPull pull =
-      PullOnPoint(TestCamera(), {0.1, 0.1, -1}, SomeObservation(true), 7.815, true);
-  EXPECT_GT(pull.cost, 100);
-  EXPECT_EQ(pull.gradient.norm(), 0);
-  EXPECT_EQ(pull.information.norm(), 0);
+TEST(Reprojection, NoInlierBehindTheCameraButAFiniteContinuousCost) {
+  const Camera camera = TestCamera();
+  const ImageObservation observation = SomeObservation(true);
+  EXPECT_TRUE(std::isinf(ReprojectionChi2(camera, {0.1, 0.1, -1}, observation)));
+  const auto cost = [&](double z_m) {
+    return PullOnPoint(camera, {0.1, 0.1, z_m}, observation, 7.815, true).cost;
+  };
+  EXPECT_NEAR(cost(kMinProjectionDepth_m + 1e-9), cost(kMinProjectionDepth_m - 1e-9), 1e-3);
+  EXPECT_GT(cost(-1), 100);
+  EXPECT_TRUE(std::isfinite(cost(0)));
 }
 
 TEST(Reprojection, UnusableObservationsAreRecognised) {
