@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "apps/command.h"
-#include "apps/progress.h"
+#include "util/progress.h"
 #include "io/dataset_writer.h"
 #include "simulation/simulator.h"
 #include "util/options.h"

@@ -12,12 +12,12 @@
 
 namespace msf {
 
-struct ColoredPoint {
+struct PlyPoint {
   Eigen::Vector3f p_w = Eigen::Vector3f::Zero();  // m
   std::array<uint8_t, 3> rgb{};
 };
 
 // Writes the points atomically; no points give a valid empty cloud.
-Status WritePly(const std::filesystem::path& file, const std::vector<ColoredPoint>& points);
+Status WritePly(const std::filesystem::path& file, const std::vector<PlyPoint>& points);
 
 }  // namespace msf
