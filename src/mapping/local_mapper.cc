@@ -144,7 +144,8 @@ bool LocalMapper::RefineNeighbourhood(KeyFrameId id) {
     if (!keyframe || map->NumKeyFrames(keyframe->map_id) < 3) return false;
     bundle = CopyLocalBundle(options_, noise_, *map, id);
   }
-  const BundleResult result = SolveBundle(map_.Read()->camera(), bundle.problem, options_.bundle, &cancel_bundle_);
+  const Camera camera = map_.Read()->camera();  // a copy: the guard must not outlive this line
+  const BundleResult result = SolveBundle(camera, bundle.problem, options_.bundle, &cancel_bundle_);
   ApplyLocalBundle(bundle, result, *map_.Write());
   return result.usable && !result.cancelled;
 }
