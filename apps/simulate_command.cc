@@ -8,10 +8,10 @@
 #include <memory>
 
 #include "apps/command.h"
-#include "util/progress.h"
 #include "io/dataset_writer.h"
 #include "simulation/simulator.h"
 #include "util/options.h"
+#include "util/progress.h"
 
 namespace msf {
 namespace {
