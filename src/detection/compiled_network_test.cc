@@ -1,0 +1,92 @@
+#include "detection/compiled_network.h"
+
+#include <gtest/gtest.h>
+
+#include "detection/dnnl_steps.h"
+#include "detection/fusion.h"
+#include "detection/test_networks.h"
+
+namespace msf {
+namespace {
+
+// A result in the order of the model file.
+std::vector<float> Dense(const NetworkOutput& output) {
+  std::vector<float> values(static_cast<size_t>(NumElements(output.shape)));
+  Convert(output.shape, output.data, {NumberFormat::kFloat32, output.channels_last}, values.data(), {});
+  return values;
+}
+
+// Largest difference over the largest magnitude.
+float RelativeError(const std::vector<float>& a, const std::vector<float>& b) {
+  float difference = 0, magnitude = 0;
+  EXPECT_EQ(a.size(), b.size());
+  for (size_t i = 0; i < a.size(); ++i) {
+    difference = std::max(difference, std::abs(a[i] - b[i]));
+    magnitude = std::max(magnitude, std::abs(b[i]));
+  }
+  EXPECT_GT(magnitude, 0);
+  return difference / magnitude;
+}
+
+std::unique_ptr<CompiledNetwork> Compile(const Graph& graph, const CompileOptions& options) {
+  auto network = CompiledNetwork::Compile(graph, options);
+  EXPECT_TRUE(network.ok()) << network.message();
+  return network.ok() ? *std::move(network) : nullptr;
+}
+
+// Largest relative error over all outputs against the interpreter on the unfused graph.
+float ErrorAgainstInterpreter(const Graph& graph, CompileOptions options) {
+  const Tensor image = TestImage(options.height, options.width);
+  StatusOr<Graph> fixed = Specialize(graph, options.height, options.width);
+  EXPECT_TRUE(fixed.ok()) << fixed.message();
+  const auto expected = Interpret(*fixed, image);
+  options.float_input = true;
+  const auto network = Compile(graph, options);
+  if (!network) return 1;
+  std::copy(image.floats.begin(), image.floats.end(), network->float_input());
+  const Status status = network->Run();
+  EXPECT_TRUE(status.ok()) << status.message();
+  float worst = 0;
+  for (const NetworkOutput& output : network->outputs()) {
+    worst = std::max(worst, RelativeError(Dense(output), expected.at(output.name).floats));
+  }
+  return worst;
+}
+
+Graph Parse(const TestNetworkOptions& options) {
+  TestNetwork network(options);
+  StatusOr<Graph> graph = network.builder().Parse();
+  EXPECT_TRUE(graph.ok()) << graph.message();
+  return *graph;
+}
+
+TEST(CompiledNetwork, AgreesWithThePlainImplementationInFloat) {
+  EXPECT_LT(ErrorAgainstInterpreter(Parse({}), {64, 96}), 1e-5f);
+}
+
+TEST(CompiledNetwork, AgreesForMsfConv) {
+  TestNetworkOptions options;
+  options.msf = true;
+  EXPECT_LT(ErrorAgainstInterpreter(Parse(options), {96, 64}), 1e-5f);
+}
+
+TEST(CompiledNetwork, AgreesForAttentionAndTheDecodedForm) {
+  TestNetworkOptions options;
+  options.attention = true;
+  options.single_output = true;
+  options.height = 64;
+  options.width = 64;
+  EXPECT_LT(ErrorAgainstInterpreter(Parse(options), {64, 64}), 1e-5f);
+}
+
+TEST(CompiledNetwork, AgreesLooselyInBfloat16) {
+  if (!HasFastBfloat16()) GTEST_SKIP() << "this processor has no bfloat16";
+  TestNetworkOptions options;
+  options.msf = true;
+  const float error = ErrorAgainstInterpreter(Parse(options), {64, 96, Precision::kBfloat16});
+  EXPECT_LT(error, 0.05f);
+  EXPECT_GT(error, 1e-6f);  // otherwise it did not run in bfloat16
+}
+
+}  // namespace
+}  // namespace msf
