@@ -20,10 +20,11 @@ Status LoopClosingOptions::Check() const {
   if (strong_covisibility < 1)
     return Status::Error("loop_closing.strong_covisibility must be at least 1");
   if (!(fuse_radius_px > 0)) return Status::Error("loop_closing.fuse_radius_px must be positive");
-  if (max_weld_keyframes < 1)
-    return Status::Error("loop_closing.max_weld_keyframes must be at least 1");
+  if (max_seam_keyframes < 1)
+    return Status::Error("loop_closing.max_seam_keyframes must be at least 1");
   MSF_RETURN_IF_ERROR(verification.Check());
   MSF_RETURN_IF_ERROR(pose.Check());
+  MSF_RETURN_IF_ERROR(pose_graph.Check());
   MSF_RETURN_IF_ERROR(weld.Check());
   return full_bundle.Check();
 }

@@ -4,6 +4,7 @@
 
 #include "estimation/rigid_alignment_ransac.h"
 #include "optimization/bundle_adjustment.h"
+#include "optimization/pose_graph.h"
 #include "optimization/pose_optimizer.h"
 #include "util/status.h"
 
@@ -16,9 +17,11 @@ struct PlaceVerificationOptions {
   int min_word_matches = 20;
   RigidAlignmentOptions alignment;
   double guided_radius_px = 8;
+  int guided_max_distance = 75;
   int min_guided_matches = 50;
   int min_refined_matches = 20;
   double tight_radius_px = 4;
+  int tight_max_distance = 50;
   int min_tight_matches = 80;
   double min_agreeing_depth_share = 0.7;
   double min_seen_share = 0.08;
@@ -37,10 +40,12 @@ struct PlaceVerificationOptions {
     visit("min_word_matches", min_word_matches, "matches by words that a candidate needs");
     visit("alignment", alignment, "");
     visit("guided_radius_px", guided_radius_px, "first guided search, px at level 0");
+    visit("guided_max_distance", guided_max_distance, "and its descriptor distance");
     visit("min_guided_matches", min_guided_matches, "matches that it must give");
     visit("min_refined_matches", min_refined_matches,
           "inliers that the refined relative pose must have");
     visit("tight_radius_px", tight_radius_px, "search with the refined pose, px at level 0");
+    visit("tight_max_distance", tight_max_distance, "and its descriptor distance");
     visit("min_tight_matches", min_tight_matches, "matches that it must give");
     visit("min_agreeing_depth_share", min_agreeing_depth_share,
           "of the matches found by place alone, the share whose depth must agree as well");
@@ -65,11 +70,13 @@ struct LoopClosingOptions {
   bool enabled = true;
   int min_keyframes = 12;
   int num_candidates = 3;
+  int min_keyframes_between_loops = 10;
   PlaceVerificationOptions verification;
   int strong_covisibility = 100;
   double fuse_radius_px = 4;
-  int max_weld_keyframes = 25;
+  int max_seam_keyframes = 25;
   PoseOptimizerOptions pose;
+  PoseGraphOptions pose_graph;
   BundleOptions weld;
   BundleOptions full_bundle{.robust_iterations = 5, .final_iterations = 10};
 
@@ -79,14 +86,17 @@ struct LoopClosingOptions {
     visit("min_keyframes", min_keyframes, "keyframes that a map needs before loops are looked for");
     visit("num_candidates", num_candidates,
           "places to verify per keyframe, of the same map and of other maps");
+    visit("min_keyframes_between_loops", min_keyframes_between_loops,
+          "keyframes after a closed loop in which no other is looked for");
     visit("verification", verification, "");
     visit("strong_covisibility", strong_covisibility,
           "shared points that make two keyframes an edge of the pose graph");
     visit("fuse_radius_px", fuse_radius_px,
           "search radius for duplicates of a point after a correction, px at level 0");
-    visit("max_weld_keyframes", max_weld_keyframes,
-          "keyframes on either side of the seam that a merge adjusts together");
+    visit("max_seam_keyframes", max_seam_keyframes,
+          "keyframes on either side of a loop's or merge's seam");
     visit("pose", pose, "");
+    visit("pose_graph", pose_graph, "");
     visit("weld", weld, "");
     visit("full_bundle", full_bundle, "");
   }
