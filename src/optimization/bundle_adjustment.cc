@@ -31,6 +31,12 @@ struct BundleState {
   Eigen::Vector3d InCamera(int pose, int point) const {
     return R_cw[pose] * p_w[point] + T_cw[pose].translation();
   }
+  void CopyTo(BundleProblem& problem) const {
+    for (size_t i = 0; i < T_cw.size(); ++i) {
+      if (!problem.poses[i].fixed) problem.poses[i].T_cw = T_cw[i];
+    }
+    for (size_t i = 0; i < p_w.size(); ++i) problem.points[i].p_w = p_w[i];
+  }
   BundleState Moved(const BundleLayout& layout, const BundleStep& step) const {
     BundleState moved = *this;
     for (size_t pose = 0; pose < T_cw.size(); ++pose) {
@@ -200,6 +206,15 @@ bool AllFinite(const BundleState& state) {
                      [](const Rigid3d& T) { return T.translation().allFinite(); });
 }
 
+std::string Summarize(const BundleProblem& problem, const BundleResult& result) {
+  return fmt::format(
+      "{} poses, {} points, {} of {} observations kept, {} iterations, cost {:.6g} to {:.6g}{}",
+      problem.poses.size(), problem.points.size(),
+      std::count(result.inlier.begin(), result.inlier.end(), 1), result.inlier.size(),
+      result.iterations, result.initial_cost, result.final_cost,
+      result.cancelled ? ", cancelled" : "");
+}
+
 }  // namespace
 
 Status BundleOptions::Check() const {
@@ -217,9 +232,9 @@ Status BundleOptions::Check() const {
 BundleResult SolveBundle(const Camera& camera, BundleProblem& problem, const BundleOptions& options,
                          const std::atomic<bool>* cancel) {
   BundleResult result;
-  const std::vector<uint8_t> usable = UsableObservations(problem);
   BundleState state(problem);
   MSF_CHECK(AllFinite(state), "bundle adjustment needs finite poses");
+  const std::vector<uint8_t> usable = UsableObservations(problem);
   const BundlePass robust_pass(camera, problem, usable, /*robust=*/true, options);
   result.initial_cost = robust_pass.Cost(state);
   robust_pass.Minimize(options.robust_iterations, cancel, state, result.iterations);
@@ -231,16 +246,8 @@ BundleResult SolveBundle(const Camera& camera, BundleProblem& problem, const Bun
       BundlePass(camera, problem, result.inlier, /*robust=*/false, options).Cost(state);
   result.cancelled = IsCancelled(cancel);
   result.usable = result.iterations > 0 && std::isfinite(result.final_cost);
-  for (size_t i = 0; i < problem.poses.size(); ++i) {
-    if (!problem.poses[i].fixed) problem.poses[i].T_cw = state.T_cw[i];
-  }
-  for (size_t i = 0; i < problem.points.size(); ++i) problem.points[i].p_w = state.p_w[i];
-  const auto num_inliers = std::count(result.inlier.begin(), result.inlier.end(), 1);
-  result.summary = fmt::format(
-      "{} poses, {} points, {} of {} observations kept, {} iterations, cost {:.6g} to {:.6g}{}",
-      problem.poses.size(), problem.points.size(), num_inliers, result.inlier.size(),
-      result.iterations, result.initial_cost, result.final_cost,
-      result.cancelled ? ", cancelled" : "");
+  result.summary = Summarize(problem, result);
+  if (result.usable) state.CopyTo(problem);
   return result;
 }
 

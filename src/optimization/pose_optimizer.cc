@@ -134,14 +134,16 @@ PoseEstimate OptimizePose(const Camera& camera, const Rigid3d& T_cw_initial,
                         .inlier = std::vector<uint8_t>(observations.size(), 0)};
   PoseProblem problem(camera, observations, options);
   Rigid3d T_cw = T_cw_initial;
-  for (int round = 0; round < options.rounds; ++round) {
-    if (problem.num_active() < options.min_observations) return estimate;
-    const bool robust = round < options.robust_rounds;
-    T_cw = problem.Minimize(T_cw, robust);
-    // Converged on an unchanged set: further rounds of the same kind would repeat this one.
-    if (!problem.Reclassify(T_cw))
-      round = robust ? std::max(round, options.robust_rounds - 1) : options.rounds;
-  }
+  const auto run_rounds = [&](int rounds, bool robust) {
+    for (int round = 0; round < rounds && problem.num_active() >= options.min_observations;
+         ++round) {
+      T_cw = problem.Minimize(T_cw, robust);
+      // With the same inliers as before, further rounds of the kind would repeat this one.
+      if (!problem.Reclassify(T_cw)) return;
+    }
+  };
+  run_rounds(options.robust_rounds, /*robust=*/true);
+  run_rounds(options.rounds - options.robust_rounds, /*robust=*/false);
   if (problem.num_active() < options.min_observations) return estimate;
   estimate.T_cw = T_cw;
   estimate.inlier = problem.active();

@@ -1,7 +1,9 @@
 // A random scene seen by a ring of cameras, for the tests and benchmarks of the solvers.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -24,48 +26,78 @@ struct TestSceneOptions {
   unsigned seed = 1;
 };
 
-// Truth and noisy observations; `problem` holds the true poses and points.
-inline BundleProblem MakeTestProblem(const Camera& camera, const TestSceneOptions& options,
-                                     std::vector<uint8_t>* is_outlier = nullptr) {
-  std::mt19937 random(options.seed);
-  std::normal_distribution<double> normal;
-  std::uniform_real_distribution<double> uniform(0, 1);
-  BundleProblem problem;
+// Poses along a gently winding path, all looking roughly the same way.
+inline std::vector<BundlePose> MakeTestPath(const TestSceneOptions& options) {
+  std::vector<BundlePose> poses;
   for (int i = 0; i < options.num_poses; ++i) {
     const double s = options.num_poses > 1 ? i / (options.num_poses - 1.0) - 0.5 : 0;
     Vector6d twist;
     twist << s * options.travel_m, 0.1 * std::sin(5 * s), 0.1 * std::cos(7 * s),
         0.05 * std::sin(9 * s), 0.1 * s, 0.1 * std::cos(4 * s);
-    problem.poses.push_back({Rigid3d::Exp(twist)});
+    poses.push_back({Rigid3d::Exp(twist)});
   }
+  return poses;
+}
+
+// Draws what a camera sees.
+class TestSensor {
+ public:
+  TestSensor(const Camera& camera, const TestSceneOptions& options)
+      : camera_(camera), options_(options), random_(options.seed) {}
+
+  double Uniform() { return std::uniform_real_distribution<double>(0, 1)(random_); }
+  double Normal() { return normal_(random_); }
+  Eigen::Vector2d AnyPixel() { return {Uniform() * camera_.width, Uniform() * camera_.height}; }
+  // A point that camera T_cw sees at 0.8 to 3.8 m.
+  Eigen::Vector3d AnyPoint(const Rigid3d& T_cw) {
+    return T_cw.Inverse() * camera_.Unproject(AnyPixel(), 0.8 + 3 * Uniform());
+  }
+  // The observation of a camera-frame point with noise, or a wrong one. Nothing outside the image.
+  std::optional<BundleObservation> Observe(const Eigen::Vector3d& p_c, bool outlier) {
+    const Eigen::Vector2d uv_px = camera_.Project(p_c);
+    if (p_c.z() < 0.3 || uv_px.x() < 0 || uv_px.y() < 0 || uv_px.x() >= camera_.width ||
+        uv_px.y() >= camera_.height) {
+      return std::nullopt;
+    }
+    BundleObservation observation;
+    observation.uv_px =
+        outlier ? AnyPixel() : uv_px + options_.noise_px * Eigen::Vector2d(Normal(), Normal());
+    observation.inv_sigma2 = 1 / std::max(options_.noise_px * options_.noise_px, 1e-4);
+    observation.inv_sigma2_disparity =
+        1 / std::max(options_.disparity_noise_px * options_.disparity_noise_px, 1e-4);
+    if (Uniform() < options_.depth_share) {
+      observation.disparity_px = camera_.bf / p_c.z() + options_.disparity_noise_px * Normal();
+    }
+    return observation;
+  }
+
+ private:
+  const Camera& camera_;
+  const TestSceneOptions& options_;
+  std::mt19937 random_;
+  std::normal_distribution<double> normal_;
+};
+
+// True poses and points with noisy observations. `is_outlier`, when asked for: per observation,
+// whether it is a wrong one.
+inline BundleProblem MakeTestProblem(const Camera& camera, const TestSceneOptions& options,
+                                     std::vector<uint8_t>* is_outlier = nullptr) {
+  TestSensor sensor(camera, options);
+  BundleProblem problem;
+  problem.poses = MakeTestPath(options);
   for (int i = 0; i < options.num_points; ++i) {
-    // Before the pose in the middle of the point's window.
-    const int centre = static_cast<int>(uniform(random) * options.num_poses);
-    const Eigen::Vector2d uv_px(uniform(random) * camera.width, uniform(random) * camera.height);
-    const Eigen::Vector3d p_c = camera.Unproject(uv_px, 0.8 + 3 * uniform(random));
-    problem.points.push_back({problem.poses[centre].T_cw.Inverse() * p_c});
-    for (int j = std::max(0, centre - options.window / 2);
-         j <= std::min(options.num_poses - 1, centre + options.window / 2); ++j) {
-      const Eigen::Vector3d p_j = problem.poses[j].T_cw * problem.points.back().p_w;
-      if (p_j.z() < 0.3) continue;
-      Eigen::Vector2d seen_px = camera.Project(p_j);
-      if (seen_px.x() < 0 || seen_px.y() < 0 || seen_px.x() >= camera.width ||
-          seen_px.y() >= camera.height)
-        continue;
-      seen_px += options.noise_px * Eigen::Vector2d(normal(random), normal(random));
-      BundleObservation observation;
-      observation.pose = j;
-      observation.point = i;
-      observation.inv_sigma2 = 1 / std::max(options.noise_px * options.noise_px, 1e-4);
-      observation.inv_sigma2_disparity =
-          1 / std::max(options.disparity_noise_px * options.disparity_noise_px, 1e-4);
-      const double disparity_noise_px = options.disparity_noise_px * normal(random);
-      if (uniform(random) < options.depth_share)
-        observation.disparity_px = camera.bf / p_j.z() + disparity_noise_px;
-      const bool outlier = uniform(random) < options.outlier_share;
-      if (outlier) seen_px = {uniform(random) * camera.width, uniform(random) * camera.height};
-      observation.uv_px = seen_px;
-      problem.observations.push_back(observation);
+    const int centre = static_cast<int>(sensor.Uniform() * options.num_poses);
+    problem.points.push_back({sensor.AnyPoint(problem.poses[centre].T_cw)});
+    const int first = std::max(0, centre - options.window / 2);
+    const int last = std::min(options.num_poses - 1, centre + options.window / 2);
+    for (int j = first; j <= last; ++j) {
+      const bool outlier = sensor.Uniform() < options.outlier_share;
+      std::optional<BundleObservation> seen =
+          sensor.Observe(problem.poses[j].T_cw * problem.points[i].p_w, outlier);
+      if (!seen) continue;
+      seen->pose = j;
+      seen->point = i;
+      problem.observations.push_back(*seen);
       if (is_outlier != nullptr) is_outlier->push_back(outlier);
     }
   }
