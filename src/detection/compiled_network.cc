@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "detection/branch_merging.h"
 #include "detection/dnnl_steps.h"
 #include "detection/fusion.h"
 #include "detection/network_builder.h"
@@ -35,6 +36,11 @@ Status CheckFloats(const Graph& graph) {
   return Status::Ok();
 }
 
+bool ShouldMerge(const CompileOptions& options) {
+  if (options.merging != CompileOptions::Merging::kAuto) return options.merging == CompileOptions::Merging::kAlways;
+  return options.precision != Precision::kFloat32 && HasMatrixUnit();
+}
+
 }  // namespace
 
 StatusOr<std::unique_ptr<CompiledNetwork>> CompiledNetwork::Compile(const Graph& graph, const CompileOptions& options) {
@@ -44,6 +50,7 @@ StatusOr<std::unique_ptr<CompiledNetwork>> CompiledNetwork::Compile(const Graph&
   StatusOr<ActivationRanges> ranges = RangesFor(graph, options.precision);
   if (!ranges.ok()) return ranges.status();
   Fuse(*fixed);
+  if (ShouldMerge(options)) MergeBranches(*fixed);
   const OpenMpThreadsScope threads(options.threads);
   std::unique_ptr<CompiledNetwork> network(new CompiledNetwork());
   network->graph_ = *std::move(fixed);
@@ -65,7 +72,7 @@ Status CompiledNetwork::Run() {
 
 void CompiledNetwork::VisitValues(
     const std::function<void(const std::string&, std::span<const float>)>& visit) const {
-  for (const NamedNumbers& value : convolution_results_) visit(value.name, value.numbers);
+  for (const NamedNumbers& value : inner_values_) visit(value.name, value.numbers);
 }
 
 }  // namespace msf

@@ -19,6 +19,8 @@ struct CompileOptions {
   int64_t width = 416;
   Precision precision = Precision::kFloat32;
   int threads = 1;
+  // One dense convolution instead of parallel branches (branch_merging.h); kAuto: where it is faster on this processor.
+  enum class Merging { kNever, kAuto, kAlways } merging = Merging::kAuto;
   bool float_input = false;  // the image is given as floats (tests), not as 8-bit pixels
   bool keep_values = false;  // no value's memory is reused, so that VisitValues() sees all (calibration, tests)
 };
@@ -48,7 +50,7 @@ class CompiledNetwork {
   // In the order of the model file; valid until the next Run().
   const std::vector<NetworkOutput>& outputs() const { return outputs_; }
 
-  // With keep_values and kFloat32: calls visit(name, numbers) for every value that a convolution made.
+  // With keep_values and kFloat32: calls visit(name, numbers) for every image-shaped value inside the network.
   void VisitValues(const std::function<void(const std::string&, std::span<const float>)>& visit) const;
 
   // Memory for values and working space, in bytes, without weights.
@@ -78,7 +80,7 @@ class CompiledNetwork {
   void* input_ = nullptr;
   std::vector<std::unique_ptr<Step>> steps_;
   std::vector<NetworkOutput> outputs_;
-  std::vector<NamedNumbers> convolution_results_;
+  std::vector<NamedNumbers> inner_values_;
 };
 
 // Metadata key under which a model file carries its activation ranges, and the text form: a JSON object {"name": [low, high], ...}.

@@ -70,6 +70,18 @@ TEST(CompiledNetwork, AgreesForMsfConv) {
   EXPECT_LT(ErrorAgainstInterpreter(Parse(options), {96, 64}), 1e-5f);
 }
 
+TEST(CompiledNetwork, MergedBranchesComputeTheSame) {
+  TestNetworkOptions options;
+  options.msf = true;
+  CompileOptions merged{96, 64};
+  merged.merging = CompileOptions::Merging::kAlways;
+  EXPECT_LT(ErrorAgainstInterpreter(Parse(options), merged), 1e-5f);
+  const auto with = Compile(Parse(options), merged);
+  merged.merging = CompileOptions::Merging::kNever;
+  const auto without = Compile(Parse(options), merged);
+  EXPECT_EQ(without->num_convolutions() - with->num_convolutions(), 7 * 4);
+}
+
 TEST(CompiledNetwork, AgreesForAttentionAndTheDecodedForm) {
   TestNetworkOptions options;
   options.attention = true;

@@ -51,5 +51,6 @@ bool CanWrite(NumberFormat compute, NumberFormat output);
 // What this processor computes fast.
 bool HasFastBfloat16();  // AVX-512 BF16 or AMX
 bool HasFastInt8();      // AVX-512 VNNI, AVX2 VNNI or AMX
+bool HasMatrixUnit();    // AMX
 
 }  // namespace msf

@@ -40,6 +40,8 @@ bool HasFastBfloat16() {
   }
 }
 
+bool HasMatrixUnit() { return dnnl::get_effective_cpu_isa() == dnnl::cpu_isa::avx512_core_amx; }
+
 bool HasFastInt8() {
   switch (dnnl::get_effective_cpu_isa()) {
     case dnnl::cpu_isa::avx2_vnni:

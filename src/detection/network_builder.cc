@@ -56,7 +56,7 @@ Status NetworkBuilder::Build() {
   }
   if (Status status = MakeSteps(); !status.ok()) return status;
   ShareScratch();
-  NameConvolutionResults();
+  NameInnerValues();
   return Status::Ok();
 }
 
@@ -293,13 +293,13 @@ void NetworkBuilder::ShareScratch() {
   for (const auto& step : network_.steps_) step->SetScratch(network_.scratch_.get());
 }
 
-void NetworkBuilder::NameConvolutionResults() {
-  for (size_t i = 0; i < graph_.nodes.size(); ++i) {
-    if (plan_.kinds[i] != NodeKind::kConvolution) continue;
-    const ValueId id = graph_.nodes[i].outputs[0];
-    const Copy& copy = copies_.at(id).front();
-    if (copy.storage.format != NumberFormat::kFloat32) continue;
-    network_.convolution_results_.push_back({value(id).name, Floats(Address(copy.buffer), value(id).shape)});
+void NetworkBuilder::NameInnerValues() {
+  for (const Node& node : graph_.nodes) {
+    for (const ValueId id : node.outputs) {
+      const Copy& copy = copies_.at(id).front();
+      if (copy.storage.format != NumberFormat::kFloat32 || value(id).shape.size() != 4) continue;
+      network_.inner_values_.push_back({value(id).name, Floats(Address(copy.buffer), value(id).shape)});
+    }
   }
 }
 

@@ -55,7 +55,7 @@ class NetworkBuilder {
   void AddOutputs();
   Status MakeSteps();
   void ShareScratch();
-  void NameConvolutionResults();
+  void NameInnerValues();
 
   CompiledNetwork& network_;
   const Graph& graph_;
