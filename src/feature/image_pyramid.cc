@@ -27,8 +27,4 @@ void BuildPyramid(const cv::Mat& grey, const ScaleLevels& scales, std::vector<cv
   }
 }
 
-void SmoothForDescriptors(const cv::Mat& level, cv::Mat& smoothed) {
-  cv::GaussianBlur(level, smoothed, {7, 7}, 2, 2, cv::BORDER_REFLECT_101);
-}
-
 }  // namespace msf

@@ -16,7 +16,4 @@ void ToGrey(const cv::Mat& color, cv::Mat& grey);
 // Levels too small for a patch are left out.
 void BuildPyramid(const cv::Mat& grey, const ScaleLevels& scales, std::vector<cv::Mat>& levels);
 
-// 7x7 Gaussian, sigma 2.
-void SmoothForDescriptors(const cv::Mat& level, cv::Mat& smoothed);
-
 }  // namespace msf

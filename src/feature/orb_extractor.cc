@@ -8,6 +8,7 @@
 #include "feature/image_pyramid.h"
 #include "feature/point_depth.h"
 #include "feature/score_peak.h"
+#include "feature/smoothing.h"
 #include "feature/steered_brief.h"
 
 namespace msf {
@@ -92,7 +93,9 @@ void OrbExtractor::ExtractLevel(int level, int quota, FrameFeatures& features) {
   std::vector<Corner>& corners = buffers_->corners;
   cv::Mat scores = buffers_->scores(cv::Rect({0, 0}, image.size()));
   // Two pixels more: the peak search looks at neighbours, its refinement at theirs.
-  ComputeFastScores(image, {area.x - 2, area.y - 2, area.width + 4, area.height + 4}, scores);
+  SmoothForCorners(image, buffers_->smoothed);
+  ComputeFastScores(buffers_->smoothed, {area.x - 2, area.y - 2, area.width + 4, area.height + 4},
+                    scores);
   corners.clear();
   FindScorePeaks(scores, area, options_.min_fast_threshold, corners);
   KeepStrongPerCell(area, options_.cell_size_px, options_.fast_threshold, corners);
@@ -105,15 +108,16 @@ void OrbExtractor::ExtractLevel(int level, int quota, FrameFeatures& features) {
                               static_cast<float>(first.rows) / image.rows);
   for (const Corner& corner : chosen) {
     const float angle_rad = PatchOrientation(image, corner.x, corner.y);
-    Eigen::Vector2f centre(corner.x, corner.y);
-    if (options_.subpixel) centre += RefineScorePeak(scores, corner.x, corner.y);
-    // The levels' corners coincide, not their first pixels' centres, which lie half a pixel inside.
-    centre += Eigen::Vector2f(0.5f, 0.5f);
+    Eigen::Vector2f offset = Eigen::Vector2f::Zero();
+    if (options_.subpixel) offset = RefineScorePeak(scores, corner.x, corner.y);
+    // The corners of the levels coincide, not the centres of their first pixels, which lie half a
+    // pixel inside.
+    const Eigen::Vector2f centre = Eigen::Vector2f(corner.x + 0.5f, corner.y + 0.5f) + offset;
     features.image_px.push_back(centre.cwiseProduct(scale) - Eigen::Vector2f(0.5f, 0.5f));
     features.angle_rad.push_back(angle_rad);
     features.level.push_back(static_cast<uint8_t>(level));
     features.descriptors.push_back(
-        DescribePatch(buffers_->smoothed, corner.x, corner.y, angle_rad));
+        DescribePatch(buffers_->smoothed, corner.x, corner.y, offset, angle_rad));
   }
 }
 

@@ -60,14 +60,15 @@ float PatchOrientation(const cv::Mat& image, int x, int y) {
   return std::atan2(static_cast<float>(moment_y), static_cast<float>(moment_x));
 }
 
-Descriptor DescribePatch(const cv::Mat& smoothed, int x, int y, float angle_rad) {
+Descriptor DescribePatch(const cv::Mat& smoothed, int x, int y, const Eigen::Vector2f& offset_px,
+                         float angle_rad) {
   static const PatternArrays pattern;
   const float cosine = std::cos(angle_rad), sine = std::sin(angle_rad);
   const int stride = static_cast<int>(smoothed.step);
   std::array<int32_t, 512> offsets;
   for (int i = 0; i < 512; ++i) {
-    const float u = cosine * pattern.x[i] - sine * pattern.y[i],
-                v = sine * pattern.x[i] + cosine * pattern.y[i];
+    const float u = cosine * pattern.x[i] - sine * pattern.y[i] + offset_px.x();
+    const float v = sine * pattern.x[i] + cosine * pattern.y[i] + offset_px.y();
     // Rounding to nearest by truncation of a positive number.
     const int column = static_cast<int>(u + 64.5f) - 64, row = static_cast<int>(v + 64.5f) - 64;
     offsets[i] = row * stride + column;

@@ -1,6 +1,7 @@
 // Orientation and descriptor of a point (Rublee et al., ICCV 2011).
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
 
@@ -12,8 +13,10 @@ namespace msf {
 // kPatchRadiusPx around it. The disc must lie inside the image.
 float PatchOrientation(const cv::Mat& image, int x, int y);
 
-// The descriptor of the pixel (x, y) of a smoothed image: the pattern turned by the angle. The disc
-// must lie inside.
-Descriptor DescribePatch(const cv::Mat& smoothed, int x, int y, float angle_rad);
+// The descriptor of the place (x, y) + offset_px of a smoothed image: the pattern turned by the
+// angle, each sample at the nearest pixel. The disc around the pixel must lie inside with a margin
+// of ceil(|offset|).
+Descriptor DescribePatch(const cv::Mat& smoothed, int x, int y, const Eigen::Vector2f& offset_px,
+                         float angle_rad);
 
 }  // namespace msf
