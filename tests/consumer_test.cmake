@@ -1,0 +1,36 @@
+# Installs the project to an empty folder, builds tests/consumer against it, runs it, and looks at what it links.
+# Needs BUILD_FOLDER, SOURCE_FOLDER, WORK_FOLDER, COMPILER.
+file(REMOVE_RECURSE ${WORK_FOLDER})
+set(prefix ${WORK_FOLDER}/prefix)
+
+function(run what)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "${what} failed (${result}):\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+run("installing" ${CMAKE_COMMAND} --install ${BUILD_FOLDER} --prefix ${prefix})
+run("configuring the consumer" ${CMAKE_COMMAND} -S ${SOURCE_FOLDER}/tests/consumer -B ${WORK_FOLDER}/build -G Ninja
+    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_PREFIX_PATH=${prefix})
+run("building the consumer" ${CMAKE_COMMAND} --build ${WORK_FOLDER}/build)
+run("running the consumer" ${WORK_FOLDER}/build/consumer)
+message(STATUS "${output}")
+
+run("ldd" ldd ${WORK_FOLDER}/build/consumer)
+foreach(unwanted highgui torch libQt libgtk libGL\\.)
+  if(output MATCHES "${unwanted}")
+    message(FATAL_ERROR "the library links ${unwanted}:\n${output}")
+  endif()
+endforeach()
+
+# What is installed must not remember where it was built.
+file(GLOB_RECURSE cmake_files ${prefix}/*.cmake)
+foreach(file ${cmake_files})
+  file(READ ${file} text)
+  string(FIND "${text}" "${SOURCE_FOLDER}/" found)
+  if(NOT found EQUAL -1)
+    message(FATAL_ERROR "${file} names the source folder")
+  endif()
+endforeach()
