@@ -9,6 +9,7 @@
 
 #include "apps/command.h"
 #include "io/dataset_writer.h"
+#include "simulation/cast.h"
 #include "simulation/simulator.h"
 #include "util/options.h"
 #include "util/progress.h"
@@ -19,6 +20,10 @@ namespace {
 // The resolved scenario; every folder that this command writes holds it.
 constexpr char kScenarioFile[] = "simulation.yaml";
 
+constexpr char kActorsHeader[] =
+    "# what moves and is visible: x and y are the first and the last column and row that show it\n"
+    "# timestamp actor class visible_px x_min y_min x_max y_max\n";
+
 struct SimulateArguments {
   std::string scenario;
   std::string folder;
@@ -26,6 +31,19 @@ struct SimulateArguments {
   int frames = 0;
   std::vector<std::string> settings;
 };
+
+// The lines of actors.txt for one frame.
+std::string DescribeActors(const SimulatedFrame& simulated,
+                           const std::vector<std::string>& classes) {
+  std::string lines;
+  const std::vector<VisibleActor> visible = FindVisibleActors(simulated.mask);
+  for (const VisibleActor& actor : visible) {
+    lines += fmt::format("{:.6f} {} {} {} {} {} {} {}\n", simulated.frame->time_s, actor.label,
+                         classes.at(actor.label - 1), actor.num_pixels, actor.box.x, actor.box.y,
+                         actor.box.br().x - 1, actor.box.br().y - 1);
+  }
+  return lines;
+}
 
 void Simulate(const SimulateArguments& arguments) {
   Scenario scenario = Require(LoadScenario(arguments.scenario));
@@ -37,12 +55,16 @@ void Simulate(const SimulateArguments& arguments) {
                                                     YAML::Dump(OptionsToYaml(scenario)))));
 
   const int num_frames = simulator.num_frames();
+  const bool has_actors = !simulator.actor_classes().empty();
+  std::string actors = kActorsHeader;
   Progress progress("simulate", "frames", num_frames);
   for (int i = 0; i < num_frames; ++i) {
     const SimulatedFrame simulated = simulator.Render(i);
-    Require(writer.AddFrame(*simulated.frame));
+    Require(writer.AddFrame(*simulated.frame, has_actors ? simulated.mask : cv::Mat()));
+    actors += DescribeActors(simulated, simulator.actor_classes());
     progress.Update(i + 1);
   }
+  if (has_actors) Require(writer.AddFile("actors.txt", actors));
   Require(writer.Finish(simulator.GroundTruth()));
   std::cout << fmt::format("{}: {} frames of scenario {}, seed {}\n", arguments.folder, num_frames,
                            scenario.name, arguments.seed);

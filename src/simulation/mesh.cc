@@ -136,7 +136,7 @@ void Mesh::Append(const Mesh& other, const Eigen::Isometry3f& pose) {
 }
 
 void Illuminate(const std::vector<Light>& lights, Mesh& mesh, size_t first) {
-  constexpr float kAmbient = 0.5f;
+  constexpr float kAmbient = 0.55f;
   for (size_t i = first; i < mesh.vertices.size(); ++i) {
     Vertex& vertex = mesh.vertices[i];
     float sum = kAmbient + 0.06f * vertex.normal.z();
@@ -144,9 +144,9 @@ void Illuminate(const std::vector<Light>& lights, Mesh& mesh, size_t first) {
       const Eigen::Vector3f to_light = light.position - vertex.position;
       const float squared = to_light.squaredNorm();
       const float cosine = std::max(0.f, vertex.normal.dot(to_light) / std::sqrt(squared + 1e-6f));
-      sum += light.strength * cosine / (1 + squared / 6);
+      sum += light.strength * cosine / (1 + squared / 8);
     }
-    vertex.light = std::min(sum, 1.25f);
+    vertex.light = std::min(sum, 1.2f);
   }
 }
 

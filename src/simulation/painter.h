@@ -36,6 +36,11 @@ cv::Mat PaintBookCover(cv::Size size, Random random);
 cv::Mat PaintBookSpine(cv::Size size, Random random);
 cv::Mat PaintBall(cv::Size size, Random random);
 
+// People; the middle of the picture is the front.
+cv::Mat PaintHead(cv::Size size, const cv::Scalar& skin, const cv::Scalar& hair, Random random);
+cv::Mat PaintShirt(cv::Size size, const cv::Scalar& base, Random random);
+cv::Mat PaintTrousers(cv::Size size, const cv::Scalar& base, Random random);
+
 // A saturated colour, and a colour near `base`.
 cv::Scalar VividColor(Random& random);
 cv::Scalar NearbyColor(const cv::Scalar& base, double spread, Random& random);

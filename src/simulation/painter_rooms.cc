@@ -23,19 +23,19 @@ void DarkenBorders(cv::Mat& picture, int reach, double strength) {
   }
 }
 
-// Marks that walls collect: holes, scratches, blobs of filler.
+// Marks that surfaces collect: holes, scratches, blobs of filler.
 void AddWear(cv::Mat& picture, double per_megatexel, Random& random) {
   const int count = static_cast<int>(per_megatexel * static_cast<double>(picture.total()) * 1e-6);
   for (int i = 0; i < count; ++i) {
     const cv::Point at(random.Int(0, picture.cols - 1), random.Int(0, picture.rows - 1));
-    const cv::Scalar color = random.Chance(0.6) ? cv::Scalar::all(random.Uniform(30, 110))
+    const cv::Scalar color = random.Chance(0.6) ? cv::Scalar::all(random.Uniform(50, 130))
                                                 : cv::Scalar::all(random.Uniform(220, 255));
-    if (random.Chance(0.7)) {
-      cv::ellipse(picture, at, {random.Int(1, 4), random.Int(1, 4)}, random.Uniform(0, 180), 0, 360,
+    if (random.Chance(0.8)) {
+      cv::ellipse(picture, at, {random.Int(1, 3), random.Int(1, 2)}, random.Uniform(0, 180), 0, 360,
                   color, -1, cv::LINE_AA);
     } else {
-      const cv::Point to(at.x + random.Int(-16, 16), at.y + random.Int(-16, 16));
-      cv::line(picture, at, to, color, random.Int(1, 2), cv::LINE_AA);
+      const cv::Point to(at.x + random.Int(-7, 7), at.y + random.Int(-7, 7));
+      cv::line(picture, at, to, color, 1, cv::LINE_AA);
     }
   }
 }
@@ -61,7 +61,7 @@ cv::Mat PaintPlaster(cv::Size size, const cv::Scalar& base, Random random) {
   AddMottle(picture, 5, 90, random);
   AddMottle(picture, 5, 14, random);
   AddMottle(picture, 7, 4, random);
-  AddWear(picture, 900, random);
+  AddWear(picture, 1800, random);
   DarkenBorders(picture, 40, 0.18);
   return picture;
 }

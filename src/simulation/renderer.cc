@@ -48,13 +48,12 @@ struct Gradients {
 Renderer::Renderer(const Scene& scene, const Camera& camera)
     : scene_(scene), camera_(camera), rasterizer_(camera) {}
 
-RenderedView Renderer::Render(const Rigid3d& T_cw, const std::vector<PlacedMesh>& movers,
-                              bool color_only) {
+void Renderer::Render(const Rigid3d& T_cw, const std::vector<PlacedMesh>& movers, bool color_only,
+                      RenderedView& view) {
   rasterizer_.Clear(T_cw);
   rasterizer_.Draw(scene_.mesh, 0);
   for (const PlacedMesh& mover : movers) rasterizer_.Draw(mover.mesh, mover.label);
 
-  RenderedView view;
   view.color.create(camera_.height, camera_.width, CV_32FC4);
   if (!color_only) {
     view.depth_m.create(camera_.height, camera_.width, CV_32FC1);
@@ -65,7 +64,6 @@ RenderedView Renderer::Render(const Rigid3d& T_cw, const std::vector<PlacedMesh>
     ShadeRow(row, view);
     if (!color_only) MeasureRow(row, view);
   }
-  return view;
 }
 
 void Renderer::ShadeRow(int row, RenderedView& view) const {

@@ -42,8 +42,10 @@ class Renderer {
   // `camera`'s distortion is ignored. `scene` must outlive the renderer.
   Renderer(const Scene& scene, const Camera& camera);
 
-  // `color_only` leaves the other images of the view empty (sub-frames of a motion blur).
-  RenderedView Render(const Rigid3d& T_cw, const std::vector<PlacedMesh>& movers, bool color_only);
+  // Fills `view`, whose images are reused. `color_only` leaves all but the colour alone (sub-frames
+  // of a motion blur).
+  void Render(const Rigid3d& T_cw, const std::vector<PlacedMesh>& movers, bool color_only,
+              RenderedView& view);
 
  private:
   void ShadeRow(int row, RenderedView& view) const;

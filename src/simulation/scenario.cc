@@ -35,6 +35,7 @@ Status Scenario::Check() const {
     if (!(jumps[i].time_s > jumps[i - 1].time_s))
       return Status::Error("jumps must be in order of time_s");
   }
+  for (const ActorOptions& actor : actors) MSF_RETURN_IF_ERROR(actor.Check());
   MSF_RETURN_IF_ERROR(path.Check());
   MSF_RETURN_IF_ERROR(color.Check());
   return depth.Check();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "simulation/camera_path.h"
+#include "simulation/cast.h"
 #include "simulation/color_sensor.h"
 #include "simulation/depth_sensor.h"
 #include "util/status.h"
@@ -50,6 +51,7 @@ struct Scenario {
   DepthSensorOptions depth;
   std::vector<Blackout> blackouts;
   std::vector<Jump> jumps;
+  std::vector<ActorOptions> actors;
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
@@ -66,6 +68,7 @@ struct Scenario {
     visit("depth", depth, "");
     visit("blackouts", blackouts, "");
     visit("jumps", jumps, "");
+    visit("actors", actors, "");
   }
   // A sentence when a value makes no sense.
   Status Check() const;

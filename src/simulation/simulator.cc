@@ -13,16 +13,18 @@ namespace msf {
 namespace {
 
 // Keys of the random streams that belong to a seed.
-enum Stream : uint64_t { kWorld = 1, kPath, kColor, kDepth, kTimes, kFrames };
+enum Stream : uint64_t { kWorld = 1, kPath, kColor, kDepth, kTimes, kFrames, kCast };
 
 }  // namespace
 
 struct Simulator::Parts {
-  Parts(const Scenario& scenario_in, const Camera& camera_in, Scene scene_in, Random random_in)
+  Parts(const Scenario& scenario_in, const Camera& camera_in, SceneBuilder builder,
+        Random random_in)
       : scenario(scenario_in),
         random(random_in),
         camera(std::make_shared<const Camera>(camera_in)),
-        scene(std::move(scene_in)),
+        cast(scenario.actors, builder, random.Fork(kCast)),
+        scene(std::move(builder).Finish()),
         path(scenario.path, random.Fork(kPath)),
         renderer(scene, *camera),
         color_sensor(scenario.color, *camera, random.Fork(kColor)),
@@ -31,14 +33,16 @@ struct Simulator::Parts {
   Scenario scenario;
   Random random;
   std::shared_ptr<const Camera> camera;
+  Cast cast;
   Scene scene;
   CameraPath path;
   Renderer renderer;
   ColorSensor color_sensor;
   DepthSensor depth_sensor;
+  RenderedView view, sub_view;
 
   bool IsBlack(double elapsed_s) const;
-  RenderedView RenderView(double time_s);
+  void RenderView(double time_s);
   Rigid3d PoseAt(double time_s) const;
 };
 
@@ -58,19 +62,22 @@ Rigid3d Simulator::Parts::PoseAt(double time_s) const {
   return path.PoseAt(path_time_s);
 }
 
-RenderedView Simulator::Parts::RenderView(double time_s) {
-  RenderedView view = renderer.Render(PoseAt(time_s).Inverse(), {}, false);
+void Simulator::Parts::RenderView(double time_s) {
+  const auto render = [&](double at_s, bool color_only, RenderedView& out) {
+    std::vector<PlacedMesh> movers = cast.At(at_s - scenario.start_time_s);
+    for (PlacedMesh& mover : movers) Illuminate(scene.lights, mover.mesh);
+    renderer.Render(PoseAt(at_s).Inverse(), movers, color_only, out);
+  };
+  render(time_s, false, view);
   const int samples = scenario.color.blur_samples;
-  if (samples == 1) return view;
+  if (samples == 1) return;
   // Motion blur: the mean of pictures spread evenly over the exposure, whose middle is the frame's
   // time.
   view.color.setTo(0);
   for (int i = 0; i < samples; ++i) {
-    const double offset_s = scenario.color.shutter_s * ((i + 0.5) / samples - 0.5);
-    view.color += renderer.Render(PoseAt(time_s + offset_s).Inverse(), {}, true).color;
+    render(time_s + scenario.color.shutter_s * ((i + 0.5) / samples - 0.5), true, sub_view);
+    cv::scaleAdd(sub_view.color, 1.0 / samples, view.color, view.color);
   }
-  view.color *= 1.0 / samples;
-  return view;
 }
 
 StatusOr<Simulator> Simulator::Create(const Scenario& scenario, uint64_t seed) {
@@ -79,9 +86,9 @@ StatusOr<Simulator> Simulator::Create(const Scenario& scenario, uint64_t seed) {
   if (!camera.ok()) return camera.status();
   camera->fps = scenario.fps;
   const Random random(seed);
-  StatusOr<Scene> scene = BuildWorld(scenario.world, random.Fork(kWorld).Next());
-  if (!scene.ok()) return scene.status();
-  return Simulator(std::make_unique<Parts>(scenario, *camera, *std::move(scene), random));
+  StatusOr<SceneBuilder> builder = BuildWorld(scenario.world, random.Fork(kWorld).Next());
+  if (!builder.ok()) return builder.status();
+  return Simulator(std::make_unique<Parts>(scenario, *camera, *std::move(builder), random));
 }
 
 Simulator::Simulator(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -95,6 +102,8 @@ int Simulator::num_frames() const {
 
 const Camera& Simulator::camera() const { return *parts_->camera; }
 const Scenario& Simulator::scenario() const { return parts_->scenario; }
+
+const std::vector<std::string>& Simulator::actor_classes() const { return parts_->cast.classes(); }
 
 double Simulator::TimeOf(int index) const {
   Random jitter = parts_->random.Fork(kTimes).Fork(static_cast<uint64_t>(index));
@@ -119,12 +128,13 @@ SimulatedFrame Simulator::Render(int index) {
     frame.depth = cv::Mat::zeros(camera().height, camera().width, CV_16UC1);
     result.mask = cv::Mat::zeros(camera().height, camera().width, CV_8UC1);
   } else {
-    const RenderedView view = parts_->RenderView(frame.time_s);
+    parts_->RenderView(frame.time_s);
+    const RenderedView& view = parts_->view;
     const Random noise = parts_->random.Fork(kFrames).Fork(static_cast<uint64_t>(index));
     frame.color = parts_->color_sensor.Expose(
         view.color, frame.time_s - parts_->scenario.start_time_s, noise.Fork(1));
     frame.depth = parts_->depth_sensor.Measure(view, noise.Fork(2));
-    result.mask = view.label;
+    result.mask = view.label.clone();
   }
   result.frame = std::make_shared<const RgbdFrame>(std::move(frame));
   return result;

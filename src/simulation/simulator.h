@@ -3,6 +3,8 @@
 
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
 
 #include "geometry/rigid3d.h"
 #include "io/trajectory.h"
@@ -31,6 +33,9 @@ class Simulator {
   int num_frames() const;
   const Camera& camera() const;
   const Scenario& scenario() const;
+
+  // What moves: mask value i stands for actor_classes()[i - 1], e.g. "person" or "box".
+  const std::vector<std::string>& actor_classes() const;
 
   // Time stamp of frame `index`, s.
   double TimeOf(int index) const;

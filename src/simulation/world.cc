@@ -156,7 +156,7 @@ void FurnishLivingRoom(SceneBuilder& builder, const Room& room) {
   builder.Place(MakeBooks(builder, 4), {x0 + 2.3f, 2.5f, 0.45f}, 30);
   builder.Place(MakeMug(builder), {x0 + 2.75f, 2.4f, 0.45f});
   builder.Place(MakePlant(builder, 0.35f), {x0 + 2.6f, 2.6f, 0.45f});
-  builder.Place(MakeFloorLamp(builder), {x0 + 3.75f, 3.5f, 0});
+  builder.Place(MakeFloorLamp(builder), {x0 + 0.95f, 3.55f, 0});
   builder.Place(MakeShelf(builder, 1.4f, 0.35f, 2.1f), {room.high.x() - 0.2f, 2.0f, 0}, -90);
   builder.Place(MakeCabinet(builder, 1.5f, 0.45f, 0.8f), {room.high.x() - 0.25f, 4.1f, 0}, -90);
   builder.Place(MakeMonitor(builder), {room.high.x() - 0.25f, 4.1f, 0.8f}, -90);
@@ -196,10 +196,10 @@ void AddDoorFrames(SceneBuilder& builder, float x0, float x1) {
   }
 }
 
-Scene BuildOffice(uint64_t seed, bool with_living_room) {
+SceneBuilder BuildOffice(uint64_t seed, bool with_living_room) {
   SceneBuilder builder(seed);
-  builder.AddLight({{1.8f, 1.8f, 2.5f}, 0.5f});
-  builder.AddLight({{4.2f, 4.2f, 2.5f}, 0.5f});
+  builder.AddLight({{1.8f, 1.8f, 2.5f}, 0.65f});
+  builder.AddLight({{4.2f, 4.2f, 2.5f}, 0.65f});
   const Room office = MakeRoom({0, 0}, {6, 6});
   const std::vector<Opening> doorways =
       with_living_room ? DoorwaysOf(office.east) : std::vector<Opening>();
@@ -208,22 +208,22 @@ Scene BuildOffice(uint64_t seed, bool with_living_room) {
   if (!with_living_room) {
     for (const Opening& opening : DoorwaysOf(office.east))
       HangDoor(builder, office.east, (opening.begin + opening.end) / 2);
-    return std::move(builder).Finish();
+    return builder;
   }
-  builder.AddLight({{7.8f, 1.8f, 2.5f}, 0.5f});
-  builder.AddLight({{9.6f, 4.4f, 2.5f}, 0.5f});
+  builder.AddLight({{7.8f, 1.8f, 2.5f}, 0.65f});
+  builder.AddLight({{9.6f, 4.4f, 2.5f}, 0.65f});
   const Room living_room = MakeRoom({6 + kWallThickness, 0}, {11.2f, 6});
   AddWalls(builder, living_room, PaintWallpaper, {165, 190, 178}, {}, DoorwaysOf(living_room.west));
   AddDoorFrames(builder, office.high.x(), living_room.low.x());
   FurnishLivingRoom(builder, living_room);
-  return std::move(builder).Finish();
+  return builder;
 }
 
 }  // namespace
 
 std::vector<std::string> WorldNames() { return {"office", "two_rooms"}; }
 
-StatusOr<Scene> BuildWorld(const std::string& name, uint64_t seed) {
+StatusOr<SceneBuilder> BuildWorld(const std::string& name, uint64_t seed) {
   if (name == "office") return BuildOffice(seed, false);
   if (name == "two_rooms") return BuildOffice(seed, true);
   return Status::Error(

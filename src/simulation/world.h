@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation/renderer.h"
+#include "simulation/scene_builder.h"
 #include "util/status.h"
 
 namespace msf {
@@ -13,7 +13,8 @@ namespace msf {
 // "two_rooms": that room and a living room east of it, joined by two doorways, so that one can walk
 // in a circle. World: x east, y north, z up, metres; the office is [0, 6] x [0, 6]. The same seed
 // builds the same world.
-StatusOr<Scene> BuildWorld(const std::string& name, uint64_t seed);
+// The builder is handed out unfinished, so that more can be put in.
+StatusOr<SceneBuilder> BuildWorld(const std::string& name, uint64_t seed);
 std::vector<std::string> WorldNames();
 
 }  // namespace msf
