@@ -3,8 +3,8 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
+
+#include "io/other_images.h"
 
 namespace msf {
 namespace {
@@ -35,25 +35,25 @@ StatusOr<cv::Mat> ImageReader::Read(const std::filesystem::path& file) {
   MSF_RETURN_IF_ERROR(ReadBytes(file, bytes_));
   const Status broken = Status::Error(file.string() + ": is no image or a damaged one");
   cv::Mat image;
-  const PngDecoder::Outcome outcome = png_.Decode(bytes_, image);
-  if (outcome == PngDecoder::Outcome::kDecoded) return image;
-  if (outcome == PngDecoder::Outcome::kBroken) return broken;
-  try {
-    image = cv::imdecode(bytes_, cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception&) {
-    return broken;
+  switch (png_.Decode(bytes_, image)) {
+    case PngDecoder::Outcome::kDecoded:
+      return image;
+    case PngDecoder::Outcome::kBroken:
+      return broken;
+    case PngDecoder::Outcome::kUnsupported:
+      break;
   }
-  return image.empty() ? StatusOr<cv::Mat>(broken) : image;
+  std::optional<cv::Mat> other = DecodeJpeg(bytes_);
+  if (!other) other = DecodeAnyPng(bytes_);
+  return other ? StatusOr<cv::Mat>(*other) : broken;
 }
 
 StatusOr<cv::Mat> ImageReader::ReadColor(const std::filesystem::path& file) {
   StatusOr<cv::Mat> image = Read(file);
-  if (!image.ok()) return image;
-  if (image->depth() != CV_8U || image->channels() == 2) {
+  if (image.ok() && image->depth() != CV_8U) {
     return Status::Error(file.string() + ": a colour image has 8 bits per channel, this one is " +
                          DescribePixels(*image));
   }
-  if (image->channels() == 4) cv::cvtColor(*image, *image, cv::COLOR_BGRA2BGR);
   return image;
 }
 

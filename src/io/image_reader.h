@@ -11,11 +11,11 @@
 
 namespace msf {
 
-// Reads PNG and JPEG files (and whatever else OpenCV decodes). Keeps its buffers from image to
+// Reads PNG and JPEG files. Keeps its buffers from image to
 // image; used by one thread at a time.
 class ImageReader {
  public:
-  // 8-bit, grey (1 channel) or BGR (3 channels; transparency is dropped).
+  // 8-bit, grey (1 channel) or BGR (3 channels); transparency is dropped, palettes are resolved.
   StatusOr<cv::Mat> ReadColor(const std::filesystem::path& file);
   // 16-bit, 1 channel.
   StatusOr<cv::Mat> ReadDepth(const std::filesystem::path& file);

@@ -91,9 +91,9 @@ TEST(TumDataset, BrokenImagesConcernTheirFrameOnly) {
               }),
               AllOf(HasSubstr("16-bit"), HasSubstr("this one is 8-bit, 1 channel")));
   EXPECT_THAT(ErrorOfFrame1([](const TestFolder& f) {
-                cv::imwrite((f / "b.png").string(), cv::Mat::zeros(6, 8, CV_16UC3));
+                cv::imwrite((f / "b.png").string(), cv::Mat::zeros(6, 8, CV_16UC1));
               }),
-              AllOf(HasSubstr("8 bits"), HasSubstr("16-bit, 3 channels")));
+              AllOf(HasSubstr("8 bits"), HasSubstr("16-bit, 1 channel")));
   EXPECT_THAT(ErrorOfFrame1([](const TestFolder& f) {
                 std::filesystem::remove(f / "b.png");
                 std::filesystem::create_directory(f / "b.png");
