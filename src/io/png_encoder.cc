@@ -3,11 +3,11 @@
 #include <libdeflate.h>
 
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
 #include <string_view>
 #include <vector>
 
+#include "io/png_unfilter.h"
 #include "util/check.h"
 
 namespace msf {
@@ -42,13 +42,6 @@ void CopyRow(const cv::Mat& image, int y, Bytes& row) {
   for (size_t x = 0; x < row.size(); x += pixel_bytes) {
     for (size_t c = 0; c < pixel_bytes; ++c) row[x + c] = in[x + pixel_bytes - 1 - c];
   }
-}
-
-uint8_t PredictPaeth(int left, int up, int up_left) {
-  const int to_left = std::abs(up - up_left), to_up = std::abs(left - up_left),
-            to_both = std::abs(left + up - 2 * up_left);
-  if (to_left <= to_up && to_left <= to_both) return static_cast<uint8_t>(left);
-  return static_cast<uint8_t>(to_up <= to_both ? up : up_left);
 }
 
 // Appends the filter byte and the filtered row; `n` is the size of a pixel. Paeth suits

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <cstring>
 #include <vector>
 
@@ -10,16 +9,6 @@ namespace msf {
 namespace {
 
 enum Filter : uint8_t { kNone = 0, kSub = 1, kUp = 2, kAverage = 3, kPaeth = 4 };
-
-// The prediction from the left, upper and upper left bytes: whichever is nearest to left + up -
-// up_left.
-uint8_t PredictPaeth(int left, int up, int up_left) {
-  const int to_left = std::abs(up - up_left);
-  const int to_up = std::abs(left - up_left);
-  const int to_up_left = std::abs(left + up - 2 * up_left);
-  if (to_left <= to_up && to_left <= to_up_left) return static_cast<uint8_t>(left);
-  return static_cast<uint8_t>(to_up <= to_up_left ? up : up_left);
-}
 
 // Undoes one row; `predict(left, up, up_left)` gives what the encoder subtracted.
 template <int N, typename Predict>

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 
 namespace msf {
 
@@ -15,5 +16,15 @@ template <int kPixelBytes>
 bool UnfilterPng(const uint8_t* filtered, int width, int height, uint8_t* out, size_t out_stride);
 
 inline constexpr size_t kUnfilterPadding = 8;
+
+// Paeth's prediction from the left, upper and upper left bytes: whichever is nearest to left + up -
+// up_left.
+inline uint8_t PredictPaeth(int left, int up, int up_left) {
+  const int to_left = std::abs(up - up_left);
+  const int to_up = std::abs(left - up_left);
+  const int to_up_left = std::abs(left + up - 2 * up_left);
+  if (to_left <= to_up && to_left <= to_up_left) return static_cast<uint8_t>(left);
+  return static_cast<uint8_t>(to_up <= to_up_left ? up : up_left);
+}
 
 }  // namespace msf
