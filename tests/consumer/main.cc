@@ -1,7 +1,6 @@
 // The library's face as another project sees it: options in, frames in, poses out.
 #include <cstdio>
 #include <memory>
-
 #include <opencv2/core.hpp>
 
 #include "system/system.h"
@@ -25,9 +24,11 @@ msf::RgbdFramePtr MakeFrame(int index, const std::shared_ptr<const msf::Camera>&
   frame->camera = camera;
   frame->color.create(camera->height, camera->width, CV_8UC1);
   for (int y = 0; y < camera->height; ++y) {
-    for (int x = 0; x < camera->width; ++x) frame->color.at<uchar>(y, x) = small.at<uchar>(y / 16, x / 16);
+    for (int x = 0; x < camera->width; ++x)
+      frame->color.at<uchar>(y, x) = small.at<uchar>(y / 16, x / 16);
   }
-  frame->depth = cv::Mat(camera->height, camera->width, CV_16UC1, cv::Scalar(2 * camera->depth_factor));
+  frame->depth =
+      cv::Mat(camera->height, camera->width, CV_16UC1, cv::Scalar(2 * camera->depth_factor));
   return frame;
 }
 
@@ -56,8 +57,10 @@ int main() {
     if (result->T_cw->translation().norm() > 1e-3) return Fail("the camera moved");
   }
   const msf::Reconstruction reconstruction = (*system)->Finish();
-  if (reconstruction.frames.size() != kFrames || counter->num_frames != kFrames) return Fail("frames were lost");
+  if (reconstruction.frames.size() != kFrames || counter->num_frames != kFrames)
+    return Fail("frames were lost");
   if (reconstruction.points.empty()) return Fail("the map is empty");
-  std::printf("consumer: %zu frames, %zu points\n", reconstruction.frames.size(), reconstruction.points.size());
+  std::printf("consumer: %zu frames, %zu points\n", reconstruction.frames.size(),
+              reconstruction.points.size());
   return 0;
 }
