@@ -1,7 +1,11 @@
 // Closes a recognised loop: bends the map so that both ends meet, and makes the two passes one.
 #pragma once
 
-#include "loop_closing/loop_detector.h"
+#include <optional>
+
+#include "loop_closing/loop_closing_options.h"
+#include "loop_closing/recognition.h"
+#include "map/shared_map.h"
 
 namespace msf {
 

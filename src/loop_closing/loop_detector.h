@@ -5,19 +5,11 @@
 #include <vector>
 
 #include "loop_closing/place_verification.h"
+#include "loop_closing/recognition.h"
 #include "map/shared_map.h"
 #include "place_recognition/keyframe_database.h"
 
 namespace msf {
-
-enum class PlaceKind { kLoop, kMerge };
-
-// A place that enough keyframes agree on.
-struct Recognition {
-  PlaceKind kind = PlaceKind::kLoop;
-  PlaceMatch match;                    // of the keyframe just looked at
-  std::vector<PlaceMatch> supporting;  // other keyframes that agree, with the same matched one
-};
 
 // Single-threaded; looks at each keyframe once, in order.
 class LoopDetector {

@@ -1,9 +1,11 @@
 // Joins two maps that show the same place.
 #pragma once
 
-#include <atomic>
+#include <optional>
 
-#include "loop_closing/loop_detector.h"
+#include "loop_closing/loop_closing_options.h"
+#include "loop_closing/recognition.h"
+#include "map/shared_map.h"
 
 namespace msf {
 

@@ -1,9 +1,12 @@
 // Where two passes through one place meet.
 #pragma once
 
+#include <optional>
 #include <vector>
 
-#include "loop_closing/loop_detector.h"
+#include "loop_closing/loop_closing_options.h"
+#include "loop_closing/recognition.h"
+#include "map/shared_map.h"
 
 namespace msf {
 
