@@ -12,8 +12,8 @@
 namespace msf {
 namespace {
 
-StatusOr<ActivationRanges> RangesFor(const Graph& graph, Precision precision) {
-  if (precision != Precision::kInt8) return ActivationRanges();
+StatusOr<ActivationRanges> RangesFor(const Graph& graph, NetworkPrecision precision) {
+  if (precision != NetworkPrecision::kInt8) return ActivationRanges();
   const auto found = graph.metadata.find(kActivationRangesKey);
   if (found == graph.metadata.end()) {
     return Status::Error(graph.source +
@@ -38,7 +38,7 @@ Status CheckFloats(const Graph& graph) {
 
 bool ShouldMerge(const CompileOptions& options) {
   if (options.merging != CompileOptions::Merging::kAuto) return options.merging == CompileOptions::Merging::kAlways;
-  return options.precision != Precision::kFloat32 && HasMatrixUnit();
+  return options.precision != NetworkPrecision::kFloat32 && HasMatrixUnit();
 }
 
 }  // namespace

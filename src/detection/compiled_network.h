@@ -17,7 +17,7 @@ namespace msf {
 struct CompileOptions {
   int64_t height = 320;  // of the input image, pixels
   int64_t width = 416;
-  Precision precision = Precision::kFloat32;
+  NetworkPrecision precision = NetworkPrecision::kFloat32;
   int threads = 1;
   // One dense convolution instead of parallel branches (branch_merging.h); kAuto: where it is faster on this processor.
   enum class Merging { kNever, kAuto, kAlways } merging = Merging::kAuto;

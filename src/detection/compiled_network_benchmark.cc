@@ -10,7 +10,7 @@ namespace {
 // One range for everything: the speed does not depend on it.
 void AddCrudeRanges(Graph& graph, const CompileOptions& options) {
   CompileOptions observing = options;
-  observing.precision = Precision::kFloat32;
+  observing.precision = NetworkPrecision::kFloat32;
   observing.keep_values = true;
   ActivationRanges ranges;
   CompiledNetwork::Compile(graph, observing).value()->VisitValues([&](const std::string& name, std::span<const float>) {
@@ -26,8 +26,8 @@ void BM_Network(benchmark::State& state) {
   network_options.msf = state.range(0) != 0;
   TestNetwork source(network_options);
   Graph graph = source.builder().Parse().value();
-  CompileOptions options{state.range(3), state.range(2), static_cast<Precision>(state.range(1))};
-  if (options.precision == Precision::kInt8) AddCrudeRanges(graph, options);
+  CompileOptions options{state.range(3), state.range(2), static_cast<NetworkPrecision>(state.range(1))};
+  if (options.precision == NetworkPrecision::kInt8) AddCrudeRanges(graph, options);
   auto network = CompiledNetwork::Compile(graph, options).value();
   for (auto _ : state) {
     if (!network->Run().ok()) state.SkipWithError("run failed");
@@ -43,8 +43,8 @@ void BM_Compile(benchmark::State& state) {
   TestNetwork source(network_options);
   const std::string bytes = source.builder().Bytes();
   Graph graph = ParseOnnx(bytes, "benchmark").value();
-  CompileOptions options{320, 416, static_cast<Precision>(state.range(0))};
-  if (options.precision == Precision::kInt8) AddCrudeRanges(graph, options);
+  CompileOptions options{320, 416, static_cast<NetworkPrecision>(state.range(0))};
+  if (options.precision == NetworkPrecision::kInt8) AddCrudeRanges(graph, options);
   for (auto _ : state) {
     benchmark::DoNotOptimize(ParseOnnx(bytes, "benchmark").value());
     CompiledNetwork::Compile(graph, options).value();

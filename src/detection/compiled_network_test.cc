@@ -95,7 +95,7 @@ TEST(CompiledNetwork, AgreesLooselyInBfloat16) {
   if (!HasFastBfloat16()) GTEST_SKIP() << "this processor has no bfloat16";
   TestNetworkOptions options;
   options.msf = true;
-  const float error = ErrorAgainstInterpreter(Parse(options), {64, 96, Precision::kBfloat16});
+  const float error = ErrorAgainstInterpreter(Parse(options), {64, 96, NetworkPrecision::kBfloat16});
   EXPECT_LT(error, 0.05f);
   EXPECT_GT(error, 1e-6f);  // otherwise it did not run in bfloat16
 }

@@ -82,6 +82,20 @@ float HalfToFloat(uint16_t bits) {
   return bits & 0x8000 ? -magnitude : magnitude;
 }
 
+uint16_t FloatToHalf(float x) {
+  const uint16_t sign = std::signbit(x) ? 0x8000 : 0;
+  const float magnitude = std::abs(x);
+  if (std::isnan(x)) return 0x7e00;
+  if (magnitude >= 65520.0f) return static_cast<uint16_t>(sign | 0x7c00);
+  int exponent = 0;
+  std::frexp(magnitude, &exponent);           // magnitude = fraction * 2^exponent, fraction in [0.5, 1)
+  const int shift = std::max(exponent, -13);  // below 2^-14 the spacing stays that of subnormals
+  const float steps = std::nearbyint(std::ldexp(magnitude, 11 - shift));  // up to 2048
+  // A rounding up to the next power of two carries into the exponent by itself.
+  const int bits = static_cast<int>(steps) + (shift + 13) * 1024;
+  return static_cast<uint16_t>(sign | (magnitude == 0 ? 0 : bits));
+}
+
 float Bfloat16ToFloat(uint16_t bits) {
   return std::bit_cast<float>(static_cast<uint32_t>(bits) << 16);
 }

@@ -18,5 +18,7 @@ StatusOr<Tensor> DecodeTensor(const onnx::TensorProto& proto);
 // IEEE half precision and bfloat16 from their bits.
 float HalfToFloat(uint16_t bits);
 float Bfloat16ToFloat(uint16_t bits);
+// The nearest half precision number, ties to even; too large ones become infinite.
+uint16_t FloatToHalf(float x);
 
 }  // namespace msf

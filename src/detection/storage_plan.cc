@@ -52,10 +52,10 @@ bool AllOfShape(const Graph& graph, const Node& node, const Shape& shape) {
 
 class Planner {
  public:
-  Planner(const Graph& graph, Precision precision, const ActivationRanges& ranges)
+  Planner(const Graph& graph, NetworkPrecision precision, const ActivationRanges& ranges)
       : graph_(graph), precision_(precision), ranges_(ranges), parent_(graph.values.size()) {
     std::iota(parent_.begin(), parent_.end(), 0);
-    high_ = precision == Precision::kFloat32 || (precision == Precision::kInt8 && !HasFastBfloat16())
+    high_ = precision == NetworkPrecision::kFloat32 || (precision == NetworkPrecision::kInt8 && !HasFastBfloat16())
                 ? NumberFormat::kFloat32
                 : NumberFormat::kBfloat16;
   }
@@ -115,7 +115,7 @@ class Planner {
   // A convolution that may run in 8 bits as far as accuracy is concerned.
   bool ToleratesInt8(size_t index) const {
     const Node& node = graph_.nodes[index];
-    if (precision_ != Precision::kInt8 || plan_.kinds[index] != NodeKind::kConvolution) return false;
+    if (precision_ != NetworkPrecision::kInt8 || plan_.kinds[index] != NodeKind::kConvolution) return false;
     return node.inputs[0] != graph_.inputs[0] && !IsHead(node);
   }
 
@@ -178,7 +178,7 @@ class Planner {
   }
 
   const Graph& graph_;
-  const Precision precision_;
+  const NetworkPrecision precision_;
   const ActivationRanges& ranges_;
   NumberFormat high_;  // where 8 bits are not used
   StoragePlan plan_;
@@ -217,7 +217,7 @@ Storage QuantizedStorage(const ActivationRange& range) {
   return storage;
 }
 
-StoragePlan PlanStorage(const Graph& graph, Precision precision, const ActivationRanges& ranges, const Storage& input) {
+StoragePlan PlanStorage(const Graph& graph, NetworkPrecision precision, const ActivationRanges& ranges, const Storage& input) {
   return Planner(graph, precision, ranges).Run(input);
 }
 

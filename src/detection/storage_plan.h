@@ -10,7 +10,7 @@
 
 namespace msf {
 
-enum class Precision { kFloat32, kBfloat16, kInt8 };
+enum class NetworkPrecision { kFloat32, kBfloat16, kInt8 };
 
 // The span of a value that 8-bit storage represents.
 struct ActivationRange {
@@ -43,7 +43,7 @@ struct StoragePlan {
 // copying. With kInt8 a convolution runs in 8 bits when the range of its input is known, unless it is sensitive: the one that
 // reads the image and the ones without a nonlinearity behind them that yield the network's outputs stay in the higher precision.
 // `input` is how the image is stored.
-StoragePlan PlanStorage(const Graph& graph, Precision precision, const ActivationRanges& ranges, const Storage& input);
+StoragePlan PlanStorage(const Graph& graph, NetworkPrecision precision, const ActivationRanges& ranges, const Storage& input);
 
 // 8-bit storage that represents `range` extended to contain 0.
 Storage QuantizedStorage(const ActivationRange& range);
