@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "simulation/camera_path.h"
+#include "simulation/lens.h"
 #include "simulation/renderer.h"
 #include "simulation/world.h"
 
@@ -26,7 +27,8 @@ struct Simulator::Parts {
         cast(scenario.actors, builder, random.Fork(kCast)),
         scene(std::move(builder).Finish()),
         path(scenario.path, random.Fork(kPath)),
-        renderer(scene, *camera),
+        lens(*camera),
+        renderer(scene, lens.ideal()),
         color_sensor(scenario.color, *camera, random.Fork(kColor)),
         depth_sensor(scenario.depth, *camera, random.Fork(kDepth)) {}
 
@@ -36,10 +38,11 @@ struct Simulator::Parts {
   Cast cast;
   Scene scene;
   CameraPath path;
+  Lens lens;
   Renderer renderer;
   ColorSensor color_sensor;
   DepthSensor depth_sensor;
-  RenderedView view, sub_view;
+  RenderedView ideal_view, sub_view, view;
 
   bool IsBlack(double elapsed_s) const;
   void RenderView(double time_s);
@@ -68,16 +71,16 @@ void Simulator::Parts::RenderView(double time_s) {
     for (PlacedMesh& mover : movers) Illuminate(scene.lights, mover.mesh);
     renderer.Render(PoseAt(at_s).Inverse(), movers, color_only, out);
   };
-  render(time_s, false, view);
+  render(time_s, false, ideal_view);
   const int samples = scenario.color.blur_samples;
-  if (samples == 1) return;
+  if (samples > 1) ideal_view.color.setTo(0);
   // Motion blur: the mean of pictures spread evenly over the exposure, whose middle is the frame's
   // time.
-  view.color.setTo(0);
-  for (int i = 0; i < samples; ++i) {
+  for (int i = 0; i < samples && samples > 1; ++i) {
     render(time_s + scenario.color.shutter_s * ((i + 0.5) / samples - 0.5), true, sub_view);
-    cv::scaleAdd(sub_view.color, 1.0 / samples, view.color, view.color);
+    cv::scaleAdd(sub_view.color, 1.0 / samples, ideal_view.color, ideal_view.color);
   }
+  lens.Apply(ideal_view, view);
 }
 
 StatusOr<Simulator> Simulator::Create(const Scenario& scenario, uint64_t seed) {

@@ -1,13 +1,24 @@
 #include "simulation/texture.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 #include <opencv2/imgproc.hpp>
 
 #include "util/check.h"
 
 namespace msf {
+namespace {
+
+// Four bytes to four floats; written as shifts because compilers turn a conversion of byte vectors
+// into scalar code.
+Color4f Unpack(uint32_t texel) {
+  using Int4 = int32_t __attribute__((vector_size(16)));
+  using Word4 = uint32_t __attribute__((vector_size(16)));
+  const Word4 bytes = (Word4{texel, texel, texel, texel} >> Word4{0, 8, 16, 24}) & 0xFF;
+  return __builtin_convertvector(reinterpret_cast<const Int4&>(bytes), Color4f);
+}
+
+}  // namespace
 
 Texture::Texture(const cv::Mat& bgr) {
   MSF_CHECK(bgr.type() == CV_8UC3 && bgr.cols >= 2 && bgr.rows >= 2, "textures are 8-bit BGR");
@@ -33,12 +44,9 @@ Color4f Texture::Level::Bilinear(float u, float v) const {
   const float fx = x - static_cast<float>(x0), fy = y - static_cast<float>(y0);
   const uint32_t* top = texels.data() + static_cast<ptrdiff_t>(y0) * width + x0;
   const uint32_t* bottom = top + width;
-  const auto color = [](uint32_t texel) {
-    return __builtin_convertvector(std::bit_cast<Texel>(texel), Color4f);
-  };
-  const Color4f c00 = color(top[0]), c10 = color(bottom[0]);
-  const Color4f upper = c00 + (color(top[1]) - c00) * fx;
-  const Color4f lower = c10 + (color(bottom[1]) - c10) * fx;
+  const Color4f c00 = Unpack(top[0]), c10 = Unpack(bottom[0]);
+  const Color4f upper = c00 + (Unpack(top[1]) - c00) * fx;
+  const Color4f lower = c10 + (Unpack(bottom[1]) - c10) * fx;
   return upper + (lower - upper) * fy;
 }
 

@@ -23,7 +23,6 @@ class Texture {
   Color4f Sample(float u, float v, float lod) const;
 
  private:
-  using Texel = unsigned char __attribute__((vector_size(4)));
   struct Level {
     int width;
     int height;
