@@ -25,6 +25,7 @@ void UnfilterRowWith(const uint8_t* row, const uint8_t* up, int width, uint8_t* 
   }
 }
 
+// Undoes one row of any filter but Paeth's.
 template <int N>
 bool UnfilterRow(uint8_t filter, const uint8_t* row, const uint8_t* up, int width, uint8_t* out) {
   switch (filter) {
@@ -41,18 +42,15 @@ bool UnfilterRow(uint8_t filter, const uint8_t* row, const uint8_t* up, int widt
       UnfilterRowWith<N>(row, up, width, out,
                          [](int left, int above, int) { return (left + above) / 2; });
       return true;
-    case kPaeth:
-      UnfilterRowWith<N>(row, up, width, out, PredictPaeth);
-      return true;
     default:
       return false;
   }
 }
 
-// Undoes kWave successive Paeth rows at once. A pixel needs its left and upper neighbours, so row r
-// runs r pixels behind row 0 and all rows advance together: each row is one group of four lanes.
-// Encoders choose this filter for nearly every row of a photograph, and one row alone is a chain of
-// dependent operations that leaves the processor idle.
+// Undoes up to kWave successive Paeth rows at once. A pixel needs its left and upper neighbours, so
+// row r runs r pixels behind row 0 and all rows advance together: each row is one group of four
+// lanes. Encoders choose this filter for nearly every row of a photograph, and one row alone is a
+// chain of dependent operations that leaves the processor idle.
 constexpr int kWave = 4;
 using Bytes = uint8_t __attribute__((vector_size(4 * kWave)));
 using Lanes = int16_t __attribute__((vector_size(8 * kWave)));
@@ -62,14 +60,10 @@ inline Lanes Abs(Lanes v) { return v < 0 ? -v : v; }
 template <int N>
 class PaethWave {
  public:
-  PaethWave(const uint8_t* filtered, size_t stride, const uint8_t* up, int width, uint8_t* out,
-            size_t out_stride)
-      : filtered_(filtered),
-        stride_(stride),
-        up_(up),
-        width_(width),
-        out_(out),
-        out_stride_(out_stride) {}
+  // `rows`: the filtered rows without their filter bytes; `outs`: where they go.
+  PaethWave(const std::array<const uint8_t*, kWave>& rows, const uint8_t* up, int width,
+            const std::array<uint8_t*, kWave>& outs)
+      : rows_(rows), up_(up), width_(width), outs_(outs) {}
 
   void Run() {
     int step = 0;
@@ -89,8 +83,7 @@ class PaethWave {
     uint32_t above = 0;
     for (int r = 0; r < kWave; ++r) {
       const int x = step - r;
-      if (kInside || (x >= 0 && x < width_))
-        std::memcpy(&words[r], filtered_ + r * stride_ + x * N, 4);
+      if (kInside || (x >= 0 && x < width_)) std::memcpy(&words[r], rows_[r] + x * N, 4);
     }
     if (kInside || step < width_) std::memcpy(&above, up_ + step * N, kCopied);
     const Bytes result = Advance(words, above);
@@ -98,7 +91,7 @@ class PaethWave {
     for (int r = 0; r < kWave; ++r) {
       const int x = step - r;
       if (kInside || (x >= 0 && x < width_)) {
-        std::memcpy(out_ + r * out_stride_ + x * N, &words[r], kCopied);
+        std::memcpy(outs_[r] + x * N, &words[r], kCopied);
       }
     }
   }
@@ -108,8 +101,8 @@ class PaethWave {
     Bytes bytes;
     std::memcpy(&bytes, words.data(), sizeof(bytes));
     const Lanes raw = __builtin_convertvector(ReversePixels(bytes), Lanes);
-    const Bytes above_bytes = {static_cast<uint8_t>(above), static_cast<uint8_t>(above >> 8),
-                               static_cast<uint8_t>(above >> 16)};
+    Bytes above_bytes{};
+    std::memcpy(&above_bytes, &above, sizeof(above));
     // Above row r's pixel is what row r - 1 gave one step ago.
     const Lanes up =
         __builtin_shufflevector(__builtin_convertvector(above_bytes, Lanes), left_, 0, 1, 2, 3, 16,
@@ -135,12 +128,10 @@ class PaethWave {
     }
   }
 
-  const uint8_t* filtered_;
-  const size_t stride_;
-  const uint8_t* up_;
+  const std::array<const uint8_t*, kWave> rows_;
+  const uint8_t* const up_;
   const int width_;
-  uint8_t* out_;
-  const size_t out_stride_;
+  const std::array<uint8_t*, kWave> outs_;
   Lanes left_{};
   Lanes up_left_{};
 };
@@ -151,18 +142,25 @@ template <int kPixelBytes>
 bool UnfilterPng(const uint8_t* filtered, int width, int height, uint8_t* out, size_t out_stride) {
   const size_t stride = 1 + static_cast<size_t>(width) * kPixelBytes;
   const std::vector<uint8_t> zeros(stride, 0);
+  std::vector<uint8_t> unused(stride);  // a wave of fewer rows lets the others write here
   const uint8_t* up = zeros.data();
   for (int y = 0; y < height;) {
-    const uint8_t* rows = filtered + y * stride;
+    const uint8_t* row = filtered + y * stride;
+    std::array<const uint8_t*, kWave> rows;
+    std::array<uint8_t*, kWave> outs;
+    rows.fill(row + 1);
+    outs.fill(unused.data());
     int num_paeth = 0;
-    while (num_paeth < kWave && y + num_paeth < height && rows[num_paeth * stride] == kPaeth)
-      ++num_paeth;
-    uint8_t* target = out + y * out_stride;
-    if (num_paeth == kWave) {
-      PaethWave<kPixelBytes>(rows + 1, stride, up, width, target, out_stride).Run();
-      y += kWave;
+    for (; num_paeth < kWave && y + num_paeth < height && row[num_paeth * stride] == kPaeth;
+         ++num_paeth) {
+      rows[num_paeth] = row + num_paeth * stride + 1;
+      outs[num_paeth] = out + (y + num_paeth) * out_stride;
+    }
+    if (num_paeth > 0) {
+      PaethWave<kPixelBytes>(rows, up, width, outs).Run();
+      y += num_paeth;
     } else {
-      if (!UnfilterRow<kPixelBytes>(rows[0], rows + 1, up, width, target)) return false;
+      if (!UnfilterRow<kPixelBytes>(row[0], row + 1, up, width, out + y * out_stride)) return false;
       ++y;
     }
     up = out + (y - 1) * out_stride;
