@@ -1,0 +1,43 @@
+// Batches of training pictures as tensors.
+#pragma once
+
+#include <vector>
+
+#include <torch/types.h>
+
+#include "training/augmentation.h"
+#include "training/detection_loss.h"
+
+namespace msf {
+
+// Pictures of one size (BGR, 8 bit) as [batch, 3, h, w], RGB in [0, 1], channels last.
+torch::Tensor ImagesToTensor(const std::vector<LabeledImage>& pictures);
+
+struct Batch {
+  torch::Tensor images;
+  BatchLabels labels;
+};
+
+// All images in memory, decoded. A file that is no image is an error that names it.
+StatusOr<std::vector<LabeledImage>> DecodeImages(const std::vector<VocImage>& set);
+
+// Serves the pictures of one epoch in a random order. Everything random depends only on (seed, epoch, place in the epoch), so that a
+// resumed training sees what the uninterrupted one would have seen.
+class EpochSampler {
+ public:
+  EpochSampler(const std::vector<LabeledImage>& images, const AugmentationOptions& options, int side, int batch, uint64_t seed,
+               int epoch);
+
+  int num_batches() const;
+  Batch Make(int index) const;
+
+ private:
+  const std::vector<LabeledImage>& images_;
+  AugmentationOptions options_;
+  int side_;
+  int batch_;
+  uint64_t seed_;
+  std::vector<size_t> order_;
+};
+
+}  // namespace msf

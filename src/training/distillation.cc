@@ -1,0 +1,137 @@
+#include "training/distillation.h"
+
+#include <algorithm>
+
+#include <torch/types.h>
+#include <torch/utils.h>
+
+#include "training/mixed_precision.h"
+#include "util/check.h"
+
+namespace msf {
+
+namespace {
+
+torch::Tensor RelativeError(const torch::Tensor& given, const torch::Tensor& wanted) {
+  const torch::Tensor target = wanted.to(torch::kFloat);
+  // Per channel, so that quiet channels count as much as loud ones.
+  const torch::Tensor spread = target.var({0, 2, 3}, false, true) + 1e-3;
+  return ((given.to(torch::kFloat) - target).square() / spread).mean();
+}
+
+// A value of the student's node `index`, if it is the output of a layer, is the teacher's output of that layer.
+int TeacherNode(const ModelGraph& student, const ModelGraph& teacher, int index) {
+  if (index == 0) return 0;
+  for (size_t layer = 0; layer < student.layers.size() && layer < teacher.layers.size(); ++layer) {
+    if (student.LayerOutput(static_cast<int>(layer)) == index) return teacher.LayerOutput(static_cast<int>(layer));
+  }
+  MSF_CHECK(false, "layers may only use outputs of layers");
+}
+
+// A square part of a layer's output; the input is `step` times as large. Early layers have far more pixels than their few weights need.
+struct Window {
+  int64_t top = 0, left = 0, size = 0, step = 1;
+};
+constexpr int64_t kLargestWindow = 40;
+constexpr int64_t kWindowMargin = 4;
+
+Window DrawWindow(const torch::Tensor& input, const torch::Tensor& output) {
+  const int64_t side = std::min(output.size(2), output.size(3));
+  Window window{.size = std::min(side, kLargestWindow), .step = input.size(2) / output.size(2)};
+  window.top = torch::randint(output.size(2) - window.size + 1, {1}, torch::kLong).item<int64_t>();
+  window.left = torch::randint(output.size(3) - window.size + 1, {1}, torch::kLong).item<int64_t>();
+  return window;
+}
+
+torch::Tensor Cut(const torch::Tensor& map, int64_t top, int64_t left, int64_t size) {
+  return map.narrow(2, top, size).narrow(3, left, size);
+}
+
+bool SameKind(const std::string& a, const std::string& b) {
+  const auto kind = [](const std::string& type) { return type == "MSFConv" ? std::string("Conv") : type; };
+  return kind(a) == kind(b);
+}
+
+}  // namespace
+
+LayerDistillation::LayerDistillation(const Network& student, const Network& teacher, const std::vector<std::string>& new_tensors)
+    : student_(student), teacher_(teacher) {
+  const ModelGraph& own = student.graph();
+  const ModelGraph& other = teacher.graph();
+  for (int i = 0; i < static_cast<int>(std::min(own.layers.size(), other.layers.size())); ++i) {
+    if (!SameKind(own.layers[i].type, other.layers[i].type)) break;
+    const std::string prefix = "model." + std::to_string(i) + ".";
+    const bool is_new = std::any_of(new_tensors.begin(), new_tensors.end(),
+                                    [&](const std::string& name) { return name.starts_with(prefix); });
+    if (is_new) layers_.push_back(i);
+  }
+}
+
+torch::Tensor LayerDistillation::LayerError(int layer, std::vector<torch::Tensor>& values,
+                                            const std::vector<torch::Tensor>& teacher_values) const {
+  const ModelGraph& own = student_.graph();
+  const ModelGraph& other = teacher_.graph();
+  const GraphLayer& nodes = own.layers[layer];
+  for (int i = nodes.begin; i < nodes.end; ++i) {
+    for (int input : own.nodes[i].inputs) {
+      if (input < nodes.begin) values[input] = teacher_values[TeacherNode(own, other, input)];
+    }
+  }
+  if (own.layers[layer].type == "Detect") {
+    student_.RunNodes(nodes.begin, nodes.end, values);
+    torch::Tensor sum = torch::zeros({});
+    for (size_t i = 0; i < own.class_heads.size(); ++i) {
+      sum = sum + RelativeError(values[own.class_heads[i]], teacher_values[other.class_heads[i]]);
+    }
+    return sum / static_cast<double>(own.class_heads.size());
+  }
+  const torch::Tensor& wanted = teacher_values[other.LayerOutput(layer)];
+  torch::Tensor& input = values[own.nodes[nodes.begin].inputs[0]];
+  const Window window = DrawWindow(input, wanted);
+  const torch::Tensor full = input;
+  input = Cut(full, window.top * window.step, window.left * window.step, window.size * window.step);
+  student_.RunNodes(nodes.begin, nodes.end, values);
+  input = full;
+  // Near the window's edge the student does not see what the teacher saw.
+  const int64_t margin = window.size < wanted.size(2) ? kWindowMargin : 0, inner = window.size - 2 * margin;
+  return RelativeError(Cut(values[own.LayerOutput(layer)], margin, margin, inner),
+                       Cut(wanted, window.top + margin, window.left + margin, inner));
+}
+
+std::vector<torch::Tensor> LayerDistillation::LayerErrors(const torch::Tensor& images, bool bfloat16) const {
+  const MixedPrecision mixed(bfloat16);
+  std::vector<torch::Tensor> teacher_values(teacher_.graph().nodes.size());
+  teacher_values[0] = images.contiguous(torch::MemoryFormat::ChannelsLast);
+  {
+    const torch::NoGradGuard no_grad;
+    teacher_.RunNodes(1, static_cast<int>(teacher_values.size()), teacher_values);
+  }
+  std::vector<torch::Tensor> values(student_.graph().nodes.size());
+  std::vector<torch::Tensor> errors;
+  for (int layer : layers_) errors.push_back(LayerError(layer, values, teacher_values));
+  return errors;
+}
+
+torch::Tensor LayerDistillation::Loss(const torch::Tensor& images, bool bfloat16) const {
+  return torch::stack(LayerErrors(images, bfloat16)).mean();
+}
+
+std::vector<double> LayerDistillation::Errors(const torch::Tensor& images, bool bfloat16) const {
+  const torch::NoGradGuard no_grad;
+  std::vector<double> errors;
+  for (const torch::Tensor& error : LayerErrors(images, bfloat16)) errors.push_back(error.item<double>());
+  return errors;
+}
+
+torch::Tensor FeatureDistance(const Network& student, const std::vector<torch::Tensor>& values, const Network& teacher,
+                              const std::vector<torch::Tensor>& teacher_values, const std::vector<int>& layers) {
+  torch::Tensor sum = torch::zeros({});
+  for (int layer : layers) {
+    const torch::Tensor target = teacher_values[teacher.graph().LayerOutput(layer)].to(torch::kFloat);
+    const torch::Tensor given = values[student.graph().LayerOutput(layer)].to(torch::kFloat);
+    sum = sum + (given - target).square().mean() / (target.square().mean() + 1e-6);
+  }
+  return sum / static_cast<double>(layers.size());
+}
+
+}  // namespace msf

@@ -1,0 +1,227 @@
+#include "training/trainer.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include <torch/types.h>
+#include <torch/utils.h>
+
+#include "training/curves.h"
+#include "training/detection_loss.h"
+#include "training/distillation.h"
+#include "training/head_decoding.h"
+#include "training/mixed_precision.h"
+#include "training/validation.h"
+#include "training/weight_adaptation.h"
+
+namespace msf {
+
+namespace {
+
+// Layers whose outputs travel on to the heads: the outputs of backbone stages and neck.
+const std::vector<int> kImitatedLayers = {4, 6, 9, 15, 18, 21};
+
+ModelConfig TeacherConfig(const std::vector<std::string>& classes, int class_width) {
+  ModelConfig config;
+  config.name = "teacher";
+  config.classes = classes;
+  config.class_width = class_width;
+  return config;
+}
+
+// Moves `count` images, chosen by the seed, out of `images`.
+std::vector<LabeledImage> SetAside(std::vector<LabeledImage>& images, int count, uint64_t seed) {
+  Random random(seed);
+  std::vector<LabeledImage> aside;
+  for (int i = 0; i < count && images.size() > 1; ++i) {
+    std::swap(images[random() % images.size()], images.back());
+    aside.push_back(std::move(images.back()));
+    images.pop_back();
+  }
+  return aside;
+}
+
+}  // namespace
+
+Status TrainOptions::Check() const {
+  if (epochs < 1 || batch < 1) return Status::Error("train.epochs and train.batch must be at least 1");
+  if (side < 32 || side % 32 != 0) return Status::Error("train.side must be a multiple of 32");
+  if (distill_epochs < 0 || validation_images < 0 || patience < 0 || threads < 1) {
+    return Status::Error("train.distill_epochs, validation_images and patience must not be negative, threads at least 1");
+  }
+  MSF_RETURN_IF_ERROR(optimizer.Check());
+  return augmentation.Check();
+}
+
+Trainer::Trainer(const ModelConfig& model, const TrainOptions& options, std::vector<LabeledImage> images,
+                 ProgressCallback on_progress)
+    : options_(options),
+      images_(std::move(images)),
+      on_progress_(std::move(on_progress)),
+      network_(BuildModelGraph(model), static_cast<uint64_t>(options.seed)) {
+  torch::set_num_threads(options.threads);
+  // The images set aside do not depend on the seed, so that trainings with several seeds can be compared.
+  validation_ = SetAside(images_, options.validation_images, 0);
+}
+
+Status Trainer::Initialize(const NamedTensors& weights) {
+  const StatusOr<NamedTensors> adapted = AdaptWeights(weights, network_.graph());
+  if (!adapted.ok()) return adapted.status();
+  new_tensors_ = network_.LoadMatching(*adapted);
+
+  const std::string branch = network_.graph().nodes[network_.graph().class_heads[0]].name;
+  const auto first = weights.find(branch.substr(0, branch.size() - 2) + ".0.conv.weight");
+  const ModelConfig config = TeacherConfig(network_.graph().classes, static_cast<int>(first->second.size(0)));
+  teacher_ = std::make_unique<Network>(BuildModelGraph(config), 0);
+  const StatusOr<NamedTensors> same = AdaptWeights(weights, teacher_->graph());
+  if (!same.ok()) return same.status();
+  MSF_RETURN_IF_ERROR(teacher_->Load(*same));
+  // The class branch was narrowed, so it learns anew, too.
+  for (const auto& [name, tensor] : network_.parameters()) {
+    if (name.find(".cv3.") == std::string::npos) continue;
+    const auto wide = same->find(name);
+    if (wide != same->end() && wide->second.sizes() != tensor.sizes()) new_tensors_.push_back(name);
+  }
+  return Status::Ok();
+}
+
+void Trainer::Distill() {
+  if (!teacher_ || new_tensors_.empty() || options_.distill_epochs == 0) return;
+  const LayerDistillation distillation(network_, *teacher_, new_tensors_);
+  if (distillation.layers().empty()) return;
+  // Norms beside new convolutions were taken over but must adapt with them: whole blocks learn, not single tensors.
+  std::set<std::string> trained;
+  for (const std::string& name : new_tensors_) {
+    if (network_.parameters().contains(name)) trained.insert(name);
+    const size_t conv = name.rfind(".conv.weight");
+    if (conv == std::string::npos) continue;
+    trained.insert(name.substr(0, conv) + ".bn.weight");
+    trained.insert(name.substr(0, conv) + ".bn.bias");
+  }
+  OptimizerOptions rates;
+  rates.learning_rate = options_.distill_rate;
+  rates.weight_decay = 0.0;
+  Optimizer optimizer(network_.parameters(), rates, trained);
+  for (const auto& [name, tensor] : network_.parameters()) tensor.requires_grad_(trained.contains(name));
+  network_.set_training(true);
+  for (int epoch = 0; epoch < options_.distill_epochs; ++epoch) {
+    // Negative epochs, so that training sees other pictures.
+    const EpochSampler sampler(images_, options_.augmentation, options_.side, options_.batch,
+                               static_cast<uint64_t>(options_.seed), -1 - epoch);
+    for (int step = 0; step < sampler.num_batches(); ++step) {
+      const torch::Tensor loss = distillation.Loss(sampler.Make(step).images, options_.bfloat16);
+      loss.backward();
+      const double at = epoch + static_cast<double>(step) / sampler.num_batches();
+      optimizer.Step(LearningRateAt(rates, at + 0.05, options_.distill_epochs));
+      on_progress_({"distill", epoch, options_.distill_epochs, step, sampler.num_batches(), loss.item<double>()});
+    }
+  }
+  for (const auto& [name, tensor] : network_.parameters()) tensor.requires_grad_(true);
+}
+
+std::set<std::string> Trainer::TrainedParameters() const {
+  std::set<std::string> trained;
+  for (const auto& [name, tensor] : network_.parameters()) {
+    const int layer = std::stoi(name.substr(std::string("model.").size()));
+    if (layer >= options_.freeze_layers) trained.insert(name);
+  }
+  return trained;
+}
+
+double Trainer::TrainStep(const Batch& batch, double epoch, EpochRecord& record) {
+  std::vector<torch::Tensor> values(network_.graph().nodes.size());
+  const double imitation =
+      teacher_ && options_.imitation_epochs > 0.0 ? options_.imitation * std::max(0.0, 1.0 - epoch / options_.imitation_epochs) : 0.0;
+  torch::Tensor distance = torch::zeros({});
+  {
+    const MixedPrecision mixed(options_.bfloat16);
+    values[0] = batch.images.contiguous(torch::MemoryFormat::ChannelsLast);
+    const int frozen = options_.freeze_layers > 0 ? network_.graph().layers[options_.freeze_layers - 1].end : 1;
+    {
+      const torch::NoGradGuard no_grad;
+      network_.RunNodes(1, frozen, values);
+    }
+    network_.RunNodes(frozen, static_cast<int>(values.size()), values);
+    if (imitation > 0.0) {
+      std::vector<torch::Tensor> wanted(teacher_->graph().nodes.size());
+      const int end = teacher_->graph().layers[kImitatedLayers.back()].end;
+      {
+        const torch::NoGradGuard no_grad;
+        wanted[0] = values[0];
+        teacher_->RunNodes(1, end, wanted);
+      }
+      distance = FeatureDistance(network_, values, *teacher_, wanted, kImitatedLayers);
+    }
+  }
+  const LossTerms terms = DetectionLoss(DecodeHeads(network_.HeadsOf(values), options_.side), batch.labels);
+  const auto images = static_cast<double>(options_.batch);
+  const torch::Tensor total = images * (terms.total + imitation * distance);
+  total.backward();
+  record.box_loss += terms.box;
+  record.class_loss += terms.classes;
+  record.distribution_loss += terms.distribution;
+  record.imitation_loss += distance.item<double>();
+  return total.item<double>() / images;
+}
+
+void Trainer::TrainEpoch(int epoch) {
+  AugmentationOptions augmentation = options_.augmentation;
+  if (epoch >= options_.epochs - options_.mosaic_off_epochs) augmentation.mosaic = 0.0;
+  const EpochSampler sampler(images_, augmentation, options_.side, options_.batch, static_cast<uint64_t>(options_.seed), epoch);
+  const int steps = sampler.num_batches();
+  EpochRecord record;
+  record.epoch = epoch + 1;
+  network_.set_training(!options_.freeze_norms);
+  for (int step = 0; step < steps; ++step) {
+    const double at = epoch + static_cast<double>(step) / steps;
+    const double loss = TrainStep(sampler.Make(step), at, record);
+    record.learning_rate = LearningRateAt(options_.optimizer, at + 1.0 / steps, options_.epochs);
+    optimizer_->Step(record.learning_rate);
+    average_->Update(network_);
+    on_progress_({"train", epoch, options_.epochs, step, steps, loss});
+  }
+  for (double* sum : {&record.box_loss, &record.class_loss, &record.distribution_loss, &record.imitation_loss}) *sum /= steps;
+  ValidateEpoch(record);
+  records_.push_back(record);
+}
+
+void Trainer::ValidateEpoch(EpochRecord& record) {
+  if (validation_.empty()) return;
+  Network averaged(network_.graph(), 0);
+  const Status loaded = averaged.Load(average_->state());
+  MSF_CHECK(loaded.ok(), loaded.message());
+  const Precision precision = Validate(averaged, validation_, options_.side, 5, options_.bfloat16);
+  record.map50 = precision.map50;
+  record.map50_95 = precision.map50_95;
+}
+
+bool Trainer::Stalled() const {
+  if (options_.patience == 0 || records_.empty()) return false;
+  const auto best = std::max_element(records_.begin(), records_.end(),
+                                     [](const EpochRecord& a, const EpochRecord& b) { return a.map50_95 < b.map50_95; });
+  return records_.end() - best > options_.patience;
+}
+
+Status Trainer::Run(const std::filesystem::path& directory) {
+  const std::filesystem::path checkpoint = directory / "checkpoint.pt";
+  std::filesystem::create_directories(directory);
+  optimizer_ = std::make_unique<Optimizer>(network_.parameters(), options_.optimizer, TrainedParameters());
+  if (std::filesystem::exists(checkpoint)) {
+    average_ = std::make_unique<WeightAverage>(network_, options_.average_decay, options_.average_ramp);
+    MSF_RETURN_IF_ERROR(LoadCheckpoint(checkpoint));
+  } else {
+    Distill();
+    average_ = std::make_unique<WeightAverage>(network_, options_.average_decay, options_.average_ramp);
+    MSF_RETURN_IF_ERROR(SaveCheckpoint(checkpoint));
+  }
+  while (static_cast<int>(records_.size()) < options_.epochs && !Stalled()) {
+    TrainEpoch(static_cast<int>(records_.size()));
+    MSF_RETURN_IF_ERROR(SaveCheckpoint(checkpoint));
+    MSF_RETURN_IF_ERROR(SaveTensors(directory / "weights.pt", average_->state()));
+    MSF_RETURN_IF_ERROR(WriteCurves(directory, records_));
+  }
+  return Status::Ok();
+}
+
+}  // namespace msf
