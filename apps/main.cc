@@ -8,8 +8,12 @@ int main(int argc, char** argv) {
       "MSF-SLAM: real-time RGB-D SLAM that keeps its accuracy while people walk through the picture",
       "msf-slam");
   app.require_subcommand(1);
+  msf::AddRunCommand(app);
   msf::AddEvaluateCommand(app);
   msf::AddSimulateCommand(app);
+  msf::AddVocabularyCommands(app);
+  msf::AddDetectCommand(app);
+  msf::AddDetectorCommands(app);
   msf::AddDetectorTrainCommand(app);
   msf::AddDetectorExportCommand(app);
   return msf::RunProgram(app, argc, argv);

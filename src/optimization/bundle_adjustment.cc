@@ -41,7 +41,8 @@ struct BundleState {
     BundleState moved = *this;
     for (size_t pose = 0; pose < T_cw.size(); ++pose) {
       if (layout.slot[pose] < 0) continue;
-      moved.T_cw[pose] = Rigid3d::Exp(step.poses.segment<6>(6 * layout.slot[pose])) * T_cw[pose];
+      moved.T_cw[pose] =
+          Rigid3d::Exp(step.poses.segment<6>(Eigen::Index{6} * layout.slot[pose])) * T_cw[pose];
       moved.R_cw[pose] = moved.T_cw[pose].RotationMatrix();
     }
     for (size_t point = 0; point < p_w.size(); ++point) moved.p_w[point] += step.points[point];
@@ -104,8 +105,8 @@ void BundlePass::Linearize(const BundleState& state, BundleEquations& equations)
   equations.point_information.assign(problem_.points.size(), Eigen::Matrix3d::Zero());
   equations.point_gradient.assign(problem_.points.size(), Eigen::Vector3d::Zero());
   equations.cross.resize(layout_.places.size());
-  for (size_t point = 0; point < problem_.points.size(); ++point)
-    AddPoint(state, static_cast<int>(point), equations);
+  const int num_points = static_cast<int>(problem_.points.size());
+  for (int point = 0; point < num_points; ++point) AddPoint(state, point, equations);
 }
 
 // With the camera-frame point p = R x + t: dp/d(twist) = [I, -Hat(p)] and dp/dx = R, so every block

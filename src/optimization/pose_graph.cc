@@ -24,7 +24,7 @@ using PoseManifold =
 
 PoseParameters ToParameters(const Rigid3d& pose) {
   const Eigen::Vector4d q = pose.rotation().coeffs();
-  const Eigen::Vector3d t = pose.translation();
+  const Eigen::Vector3d& t = pose.translation();
   return {q[0], q[1], q[2], q[3], t[0], t[1], t[2]};
 }
 

@@ -20,6 +20,7 @@ struct ImageObservation {
   Eigen::Vector2d uv_px = Eigen::Vector2d::Zero();  // undistorted
   double disparity_px = -1;                         // bf / measured depth; <= 0: no depth
   double inv_sigma2 = 1;                            // of u and of v, 1/px^2
+  double inv_knee_disparity = 0;                    // see DisparityCost
   double inv_sigma2_disparity = 1;                  // of the disparity, 1/px^2
   double weight = 1;                                // static probability, [0, 1]; 0: ignored
 
@@ -76,10 +77,23 @@ struct ReprojectionJacobian {
   }
 };
 
+// Geman and McClure's kernel on the squared disparity error s (over variance): s / (1 + s * inv_knee). A depth sampled across an
+// edge is wrong by far more than the sensor's noise while the position in the image is right: its disparity then costs at most
+// 1 / inv_knee and pulls no more, and the observation goes on as one without depth. inv_knee = 0 is plain least squares.
+inline double DisparityCost(double squared_error, double inv_knee) {
+  return squared_error / (1 + squared_error * inv_knee);
+}
+// Its derivative, the factor on the information of the disparity.
+inline double DisparityWeight(double squared_error, double inv_knee) {
+  const double ratio = 1 / (1 + squared_error * inv_knee);
+  return ratio * ratio;
+}
+
 // Squared residual over variance.
 inline double ResidualChi2(const Eigen::Vector3d& residual, const ImageObservation& observation) {
+  const double disparity_error = observation.inv_sigma2_disparity * residual.z() * residual.z();
   return observation.inv_sigma2 * residual.head<2>().squaredNorm() +
-         observation.inv_sigma2_disparity * residual.z() * residual.z();
+         DisparityCost(disparity_error, observation.inv_knee_disparity);
 }
 
 // The same for a point; infinite when it lies at or behind the camera plane.
@@ -107,7 +121,7 @@ inline double ObservationCost(const ImageObservation& observation, double chi2, 
 // How one observation pulls on its point in camera coordinates: cost, Gauss-Newton gradient J^T W r
 // and information J^T W J (robust and static weight included).
 struct PointPull {
-  double cost;
+  double cost = 0;
   Eigen::Vector3d gradient;
   Eigen::Matrix3d information;
 };
@@ -118,7 +132,10 @@ inline PointPull PullOnPoint(const Camera& camera, const Eigen::Vector3d& p_c,
   const double chi2 = ResidualChi2(r, observation);
   const double scale = observation.weight * (robust ? HuberWeight(chi2, gate) : 1);
   const double w = scale * observation.inv_sigma2;
-  const double w_d = observation.HasDepth() ? scale * observation.inv_sigma2_disparity : 0;
+  const double disparity_error = observation.inv_sigma2_disparity * r.z() * r.z();
+  const double w_d = observation.HasDepth() ? scale * observation.inv_sigma2_disparity *
+                                                  DisparityWeight(disparity_error, observation.inv_knee_disparity)
+                                            : 0;
   const auto [a, b, c, d, e] = ReprojectionJacobian(camera, p_c);
   const double ac = w * a * c, bd = w * b * d;
   PointPull pull;

@@ -1,6 +1,7 @@
 // Those who want to know what happens: viewers, loggers, recorders. The system never asks whether they exist.
 #pragma once
 
+#include "loop_closing/loop_closer.h"
 #include "mapping/local_mapper.h"
 #include "tracking/tracking_result.h"
 
@@ -12,6 +13,8 @@ class Observer {
   virtual ~Observer() = default;
   virtual void OnFrame(const TrackingResult& /*result*/) {}
   virtual void OnKeyFrameMapped(KeyFrameId /*id*/, const MappingSummary& /*summary*/) {}
+  // A loop was closed or two maps became one.
+  virtual void OnPlaceRecognized(const LoopClosingSummary& /*summary*/) {}
 };
 
 }  // namespace msf

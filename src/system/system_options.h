@@ -16,6 +16,8 @@ struct SystemOptions {
   uint64_t seed = 0;
   std::string vocabulary;
   std::string dynamic = "off";
+  bool wait_for_mapping = false;
+  bool final_bundle = true;
   OrbOptions feature;
   NoiseOptions noise;
   TrackingOptions tracking;
@@ -29,6 +31,9 @@ struct SystemOptions {
     visit("seed", seed, "of everything random");
     visit("vocabulary", vocabulary, "file of visual words; empty: the one that ships");
     visit("dynamic", dynamic, "what happens to moving things: off");
+    visit("wait_for_mapping", wait_for_mapping,
+          "tracking waits while keyframes queue up: for recordings, which can be read faster than they can be mapped");
+    visit("final_bundle", final_bundle, "adjust the whole map once more when the last frame has been seen");
     visit("feature", feature, "");
     visit("noise", noise, "");
     visit("tracking", tracking, "");

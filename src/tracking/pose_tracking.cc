@@ -50,6 +50,10 @@ LastFrameQueries ProjectLastFrame(const TrackingContext& context, const Map& map
 
 }  // namespace
 
+PointMatch MakePointMatch(const MapPoint& point, const FrameFeatures& features, int feature) {
+  return {feature, point.id, point.p_w, MatchWeight(features, feature, point.static_weight)};
+}
+
 std::vector<PointMatch> MatchLastFrame(const TrackingContext& context, const Map& map, const Frame& last,
                                        const FrameFeatures& features, const Rigid3d& T_cw_predicted) {
   LastFrameQueries search = ProjectLastFrame(context, map, last, T_cw_predicted);
@@ -68,23 +72,20 @@ std::vector<PointMatch> MatchLastFrame(const TrackingContext& context, const Map
   }
   std::vector<PointMatch> matches;
   for (const auto& [last_feature, feature] : pairs) {
-    const MapPoint& point = *search.points[query_of[last_feature]];
-    matches.push_back({feature, point.id, point.p_w, MatchWeight(features, feature, point.static_weight)});
+    matches.push_back(MakePointMatch(*search.points[query_of[last_feature]], features, feature));
   }
   return matches;
 }
 
-std::vector<PointMatch> MatchKeyFrame(const TrackingContext& context, const Map& map, const KeyFrame& keyframe,
-                                      const BagOfWords& keyframe_words, const FrameFeatures& features,
-                                      const BagOfWords& words) {
+std::vector<PointMatch> MatchKeyFrame(const Map& map, const KeyFrame& keyframe, const BagOfWords& keyframe_words,
+                                      const FrameFeatures& features, const BagOfWords& words, double ratio) {
   std::vector<uint8_t> has_point(keyframe.points.size());
   std::transform(keyframe.points.begin(), keyframe.points.end(), has_point.begin(),
                  [](MapPointId id) { return id.valid(); });
-  const WordMatchOptions options{.ratio = context.options.reference_match_ratio};
+  const WordMatchOptions options{.ratio = ratio};
   std::vector<PointMatch> matches;
   for (const auto& [i, j] : MatchByWords({*keyframe.features, keyframe_words, has_point}, {features, words, {}}, options)) {
-    const MapPoint& point = *map.FindPoint(keyframe.points[i]);
-    matches.push_back({j, point.id, point.p_w, MatchWeight(features, j, point.static_weight)});
+    matches.push_back(MakePointMatch(*map.FindPoint(keyframe.points[i]), features, j));
   }
   return matches;
 }

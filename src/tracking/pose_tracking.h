@@ -28,14 +28,15 @@ struct PointMatch {
   double weight = 1;  // static probability of point and feature
 };
 
+PointMatch MakePointMatch(const MapPoint& point, const FrameFeatures& features, int feature);
+
 // The points of the last frame, searched where `T_cw_predicted` puts them (twice as wide when too few are found).
 std::vector<PointMatch> MatchLastFrame(const TrackingContext& context, const Map& map, const Frame& last,
                                        const FrameFeatures& features, const Rigid3d& T_cw_predicted);
 
-// The points of a keyframe, matched by visual words.
-std::vector<PointMatch> MatchKeyFrame(const TrackingContext& context, const Map& map, const KeyFrame& keyframe,
-                                      const BagOfWords& keyframe_words, const FrameFeatures& features,
-                                      const BagOfWords& words);
+// The points of a keyframe, matched by visual words; `ratio` bounds best against second best descriptor.
+std::vector<PointMatch> MatchKeyFrame(const Map& map, const KeyFrame& keyframe, const BagOfWords& keyframe_words,
+                                      const FrameFeatures& features, const BagOfWords& words, double ratio);
 
 struct LocalMatches {
   std::vector<PointMatch> matches;   // new ones only

@@ -64,7 +64,9 @@ bool Tracker::FindPose(TrackingResult& result) {
   const StageTimer timer(result.timings_ms, "pose");
   if (state_ == TrackingState::kTracking) {
     RefreshLastFrame();
-    if (FollowMotion() || FollowReferenceKeyFrame()) return true;
+    // Without a velocity the camera may be anywhere near: words need no prediction.
+    const bool found = velocity_ ? FollowMotion() || FollowReferenceKeyFrame() : FollowReferenceKeyFrame() || FollowMotion();
+    if (found) return true;
   }
   return RelocalizeFrame();
 }
@@ -86,7 +88,8 @@ bool Tracker::FollowReferenceKeyFrame() {
     if (!reference) return false;
     const BagOfWords reference_words =
         reference->words ? *reference->words : vocabulary_->Transform(reference->features->descriptors);
-    matches_ = MatchKeyFrame(context_, *map, *reference, reference_words, *frame_.features, words);
+    matches_ = MatchKeyFrame(*map, *reference, reference_words, *frame_.features, words,
+                             options_.tracking.reference_match_ratio);
   }
   if (static_cast<int>(matches_.size()) < options_.tracking.min_reference_matches) return false;
   frame_.T_cw = last_.T_cw;

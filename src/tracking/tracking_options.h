@@ -38,7 +38,7 @@ struct TrackingOptions {
   int min_pose_inliers = 10;
   int max_local_keyframes = 80;
   int max_neighbours = 10;
-  double local_radius_factor = 3;
+  double local_radius_factor = 5;
   double local_radius_factor_relocalized = 5;
   double local_match_ratio = 0.8;
   int min_local_inliers = 30;

@@ -34,6 +34,12 @@ class BoundedQueue {
     return item;
   }
 
+  // Waits until at most `count` items are inside, or the queue is closed.
+  void WaitUntilAtMost(size_t count) const {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return closed_ || items_.size() <= count; });
+  }
+
   // No more items come in; those inside are still handed out.
   void Close() {
     const std::lock_guard lock(mutex_);
@@ -49,7 +55,7 @@ class BoundedQueue {
  private:
   const size_t capacity_;
   mutable std::mutex mutex_;
-  std::condition_variable changed_;
+  mutable std::condition_variable changed_;
   std::deque<T> items_;
   bool closed_ = false;
 };

@@ -1,0 +1,32 @@
+// What `msf-slam run` was asked to do.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "system/system_options.h"
+
+namespace msf {
+
+struct RunArguments {
+  std::filesystem::path dataset;
+  std::string camera;
+  std::filesystem::path config_file;
+  std::vector<std::string> assignments;
+  std::string dynamic;
+  bool deterministic = false;
+  bool real_time = false;
+  size_t max_frames = 0;  // 0: all
+  std::filesystem::path out_folder;
+  std::optional<uint64_t> seed;
+};
+
+void DeclareRunArguments(CLI::App& command, RunArguments& arguments);
+
+// The options after file, --set and the switches, checked; throws CommandFailure with a sentence.
+SystemOptions ResolveOptions(const RunArguments& arguments);
+
+}  // namespace msf

@@ -1,0 +1,213 @@
+#include "system/system.h"
+
+#include <algorithm>
+#include <map>
+
+#include "loop_closing/full_bundle.h"
+#include "system/worker.h"
+#include "tracking/tracker.h"
+
+namespace msf {
+namespace {
+
+constexpr size_t kMappingQueue = 8;
+constexpr size_t kLoopClosingQueue = 64;
+constexpr size_t kFullBundleQueue = 4;
+
+StatusOr<std::shared_ptr<const Vocabulary>> LoadVocabulary(const std::string& file) {
+  StatusOr<Vocabulary> vocabulary = Vocabulary::Load(file);
+  if (!vocabulary.ok()) return vocabulary.status();
+  return std::make_shared<const Vocabulary>(*std::move(vocabulary));
+}
+
+}  // namespace
+
+Status SystemOptions::Check() const {
+  if (dynamic != "off") return Status::Error("dynamic: '" + dynamic + "' is not available; known is: off");
+  for (const Status& status :
+       {feature.Check(), noise.Check(), tracking.Check(), mapping.Check(), loop_closing.Check()}) {
+    if (!status.ok()) return status;
+  }
+  return Status::Ok();
+}
+
+// The stages and, in threaded mode, the workers that carry keyframes from one to the next.
+class System::Impl {
+ public:
+  Impl(const SystemOptions& options, const Camera& camera, std::shared_ptr<const Vocabulary> vocabulary);
+
+  StatusOr<TrackingResult> Track(const RgbdFramePtr& frame);
+  Reconstruction Finish();
+  void AddObserver(std::shared_ptr<Observer> observer) { observers_.push_back(std::move(observer)); }
+
+ private:
+  MappingLoad Load() const;
+  void HandOn(KeyFrameId id);
+  void MapKeyFrame(KeyFrameId id);
+  void CloseLoops(KeyFrameId id);
+  void RequestFullBundle(MapId id);
+  Reconstruction Resolve(const Map& map) const;
+
+  const SystemOptions options_;
+  const std::shared_ptr<const Camera> camera_;
+  OrbExtractor extractor_;
+  SharedMap map_;
+  KeyFrameDatabase database_;
+  Tracker tracker_;
+  LocalMapper mapper_;
+  LoopCloser loop_closer_;
+  FullBundle full_bundle_;
+  TrajectoryRecorder recorder_;
+  std::vector<std::shared_ptr<Observer>> observers_;
+  double last_time_s_ = -1e300;
+  std::atomic<int> num_loops_ = 0, num_merges_ = 0;
+  std::atomic<bool> cancel_full_bundle_ = false;
+  // Null in deterministic mode. Declared last so that they stop before what they work on goes.
+  std::unique_ptr<Worker<MapId>> full_bundle_worker_;
+  std::unique_ptr<Worker<KeyFrameId>> loop_worker_;
+  std::unique_ptr<Worker<KeyFrameId>> mapping_worker_;
+};
+
+System::Impl::Impl(const SystemOptions& options, const Camera& camera, std::shared_ptr<const Vocabulary> vocabulary)
+    : options_(options), camera_(std::make_shared<const Camera>(camera)), extractor_(options.feature),
+      map_(Map(camera_, extractor_.levels())),
+      tracker_({options.tracking, options.relocalization, options.noise, options.seed}, camera_, extractor_.levels(),
+               map_, vocabulary, database_),
+      mapper_(options.mapping, options.noise, map_, vocabulary),
+      loop_closer_(options.loop_closing, options.noise, map_, database_, options.seed),
+      full_bundle_(options.loop_closing, options.noise, map_) {
+  if (options.deterministic) return;
+  full_bundle_worker_ = std::make_unique<Worker<MapId>>(kFullBundleQueue, [this](MapId id) {
+    cancel_full_bundle_ = false;
+    full_bundle_.Run(id, cancel_full_bundle_);
+  });
+  loop_worker_ = std::make_unique<Worker<KeyFrameId>>(kLoopClosingQueue, [this](KeyFrameId id) { CloseLoops(id); });
+  mapping_worker_ = std::make_unique<Worker<KeyFrameId>>(kMappingQueue, [this](KeyFrameId id) { MapKeyFrame(id); });
+}
+
+StatusOr<TrackingResult> System::Impl::Track(const RgbdFramePtr& frame) {
+  if (const Status status = CheckFrame(*frame); !status.ok()) return status;
+  if (!(frame->time_s > last_time_s_)) {
+    return Status::Error("frame " + std::to_string(frame->id.value()) + " is not later than the one before it");
+  }
+  last_time_s_ = frame->time_s;
+
+  if (options_.wait_for_mapping && mapping_worker_) mapping_worker_->WaitUntilBegun();
+
+  StageTimings timings_ms;
+  std::shared_ptr<const FrameFeatures> features;
+  {
+    const StageTimer timer(timings_ms, "feature");
+    features = std::make_shared<const FrameFeatures>(extractor_.Extract(*frame));
+  }
+  TrackingResult result;
+  {
+    const StageTimer timer(timings_ms, "tracking");
+    result = tracker_.Track(frame, std::move(features), Load());
+  }
+  for (const auto& [stage, ms] : result.timings_ms) timings_ms["tracking." + stage] = ms;
+  timings_ms["total"] = timings_ms["feature"] + timings_ms["tracking"];
+  result.timings_ms = std::move(timings_ms);
+  recorder_.Record(result);
+  if (result.new_keyframe) HandOn(*result.new_keyframe);
+  for (const auto& observer : observers_) observer->OnFrame(result);
+  return result;
+}
+
+MappingLoad System::Impl::Load() const {
+  if (!mapping_worker_) return {};
+  return {.idle = mapping_worker_->idle(), .queued = mapping_worker_->queued()};
+}
+
+void System::Impl::HandOn(KeyFrameId id) {
+  if (!mapping_worker_) return MapKeyFrame(id);
+  mapper_.Interrupt();
+  mapping_worker_->Push(id);
+}
+
+void System::Impl::MapKeyFrame(KeyFrameId id) {
+  const MappingSummary summary =
+      mapper_.Process(id, [this] { return mapping_worker_ && mapping_worker_->queued() > 0; });
+  for (const auto& observer : observers_) observer->OnKeyFrameMapped(id, summary);
+  if (loop_worker_) {
+    loop_worker_->Push(id);
+  } else {
+    CloseLoops(id);
+  }
+}
+
+void System::Impl::CloseLoops(KeyFrameId id) {
+  const LoopClosingSummary summary = loop_closer_.Process(id);
+  if (summary.found == PlaceKind::kLoop) ++num_loops_;
+  if (summary.found == PlaceKind::kMerge) ++num_merges_;
+  if (summary.found) {
+    for (const auto& observer : observers_) observer->OnPlaceRecognized(summary);
+  }
+  if (summary.wants_full_bundle) RequestFullBundle(*summary.wants_full_bundle);
+}
+
+void System::Impl::RequestFullBundle(MapId id) {
+  cancel_full_bundle_ = full_bundle_worker_ != nullptr;  // a newer correction makes the one under way useless
+  if (full_bundle_worker_) {
+    full_bundle_worker_->Push(id);
+  } else {
+    full_bundle_.Run(id, cancel_full_bundle_);
+  }
+}
+
+Reconstruction System::Impl::Finish() {
+  if (mapping_worker_) {
+    mapping_worker_->Finish();
+    loop_worker_->Finish();
+    full_bundle_worker_->Finish();
+  }
+  if (options_.final_bundle) {
+    cancel_full_bundle_ = false;
+    const std::vector<MapId> maps = map_.Read()->MapIds();
+    for (const MapId id : maps) full_bundle_.Run(id, cancel_full_bundle_);
+  }
+  return Resolve(*map_.Read());
+}
+
+Reconstruction System::Impl::Resolve(const Map& map) const {
+  Reconstruction result;
+  result.frames = recorder_.Resolve(map);
+  std::map<MapId, int> frames_per_map;
+  for (const ResolvedFrame& frame : result.frames) {
+    if (frame.T_wc) ++frames_per_map[frame.map_id];
+  }
+  for (const auto& [id, count] : frames_per_map) {
+    if (!result.main_map.valid() || count > frames_per_map[result.main_map]) result.main_map = id;
+  }
+  for (const KeyFrameId id : map.KeyFrameIds()) {
+    const KeyFrame& keyframe = *map.FindKeyFrame(id);
+    result.keyframes.push_back({id, keyframe.time_s, keyframe.T_cw.Inverse(), keyframe.map_id});
+  }
+  for (const MapPointId id : map.PointIds(result.main_map)) {
+    const MapPoint& point = *map.FindPoint(id);
+    result.points.push_back({point.p_w, point.color_bgr});
+  }
+  result.num_maps = static_cast<int>(map.MapIds().size());
+  result.num_loops = num_loops_;
+  result.num_merges = num_merges_;
+  return result;
+}
+
+StatusOr<std::unique_ptr<System>> System::Create(const SystemOptions& options, const Camera& camera) {
+  if (const Status status = options.Check(); !status.ok()) return status;
+  if (const Status status = camera.Check(); !status.ok()) return status;
+  StatusOr<std::shared_ptr<const Vocabulary>> vocabulary = LoadVocabulary(options.vocabulary);
+  if (!vocabulary.ok()) return vocabulary.status();
+  return std::unique_ptr<System>(new System(std::make_unique<Impl>(options, camera, *vocabulary)));
+}
+
+System::System(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+System::~System() = default;
+
+void System::AddObserver(std::shared_ptr<Observer> observer) { impl_->AddObserver(std::move(observer)); }
+
+StatusOr<TrackingResult> System::Track(const RgbdFramePtr& frame) { return impl_->Track(frame); }
+
+Reconstruction System::Finish() { return impl_->Finish(); }
+
+}  // namespace msf
