@@ -57,7 +57,7 @@ inline int RansacIterations(double inlier_share, int sample_size, double confide
 // kSampleSize different indices below `size` (>= kSampleSize).
 template <int kSampleSize>
 std::array<int, kSampleSize> DrawSample(int size, std::mt19937_64& random) {
-  std::array<int, kSampleSize> sample;
+  std::array<int, kSampleSize> sample{};
   for (int i = 0; i < kSampleSize; ++i) {
     do {
       sample[i] = static_cast<int>(random() % static_cast<uint64_t>(size));

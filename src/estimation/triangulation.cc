@@ -25,7 +25,7 @@ std::optional<Eigen::Vector3d> Triangulate(const Camera& camera, const Rigid3d& 
   equations.row(1) << 0, 1, -ray1.y();
   equations.row(2) = R_21.row(0) - ray2.x() * R_21.row(2);
   equations.row(3) = R_21.row(1) - ray2.y() * R_21.row(2);
-  const Eigen::Vector3d t = T_21.translation();
+  const Eigen::Vector3d& t = T_21.translation();
   const Eigen::Vector4d right_side(0, 0, ray2.x() * t.z() - t.x(), ray2.y() * t.z() - t.y());
   const Eigen::Vector3d p_1 = equations.householderQr().solve(right_side);
   if (!p_1.allFinite() || !(p_1.z() > 0) || !((T_21 * p_1).z() > 0)) return std::nullopt;
