@@ -56,6 +56,30 @@ TEST(Reprojection, PullIsTheGradientOfTheCost) {
   }
 }
 
+// The disparity's own kernel: a wrong depth stops pulling and leaves the position in the image to
+// decide.
+TEST(Reprojection, DisparityKernelLetsGoOfAWrongDepth) {
+  const Camera camera = TestCamera();
+  ImageObservation observation = SomeObservation(true);
+  observation.inv_knee_disparity = 0.1;
+  const Eigen::Vector3d p_c(-0.1, -0.2, 1.9);
+  const auto pull = [&](const Eigen::Vector3d& p) {
+    return PullOnPoint(camera, p, observation, 1e9, false);
+  };
+  Eigen::Vector3d numeric;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d step = 1e-6 * Eigen::Vector3d::Unit(k);
+    numeric[k] = (pull(p_c + step).cost - pull(p_c - step).cost) / 2e-6;
+  }
+  EXPECT_LT((numeric - 2 * pull(p_c).gradient).norm(), 1e-5 * numeric.norm());
+  observation.disparity_px = 60;
+  const double cost_of_wrong_depth = pull(p_c).cost;
+  observation.disparity_px = -1;
+  EXPECT_LT(cost_of_wrong_depth - pull(p_c).cost, observation.weight / 0.1);
+  EXPECT_NEAR(DisparityCost(4, 0), 4, 1e-12);
+  EXPECT_NEAR(DisparityWeight(4, 0), 1, 1e-12);
+}
+
 TEST(Reprojection, PullInformationIsThatOfTheJacobian) {
   const Camera camera = TestCamera();
   const Eigen::Vector3d p_c(-0.1, -0.2, 1.9);
