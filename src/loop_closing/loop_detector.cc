@@ -1,6 +1,7 @@
 #include "loop_closing/loop_detector.h"
 
 #include <algorithm>
+#include <set>
 
 namespace msf {
 namespace {
@@ -73,6 +74,24 @@ std::optional<Recognition> LoopDetector::Look(PlaceKind kind, const PlaceWindow&
   const bool complete = hypothesis && hypothesis->missed == 0 &&
                         static_cast<int>(hypothesis->place.supporting.size()) >= needed;
   return complete ? std::optional(hypothesis->place) : std::nullopt;
+}
+
+std::vector<KeyFrameId> LoopDetector::Candidates(PlaceKind kind, const PlaceWindow& current,
+                                                 const Map& map,
+                                                 const KeyFrameDatabase& database) const {
+  const KeyFrameView& keyframe = current.centre();
+  std::set<KeyFrameId> excluded = {keyframe.id};
+  for (const auto& [neighbour, weight] : map.covisibility().All(keyframe.id))
+    excluded.insert(neighbour);
+  const auto accept = [&](KeyFrameId id) {
+    const KeyFrame* other = map.FindKeyFrame(id);
+    return other && (other->map_id == current.map_id) == (kind == PlaceKind::kLoop);
+  };
+  const auto neighbours = [&](KeyFrameId id) {
+    return map.covisibility().Best(id, options_.verification.num_window_neighbours);
+  };
+  return database.PlaceCandidates(*keyframe.words, excluded, accept, neighbours,
+                                  options_.num_candidates);
 }
 
 std::optional<LoopDetector::Hypothesis> LoopDetector::Suppose(
