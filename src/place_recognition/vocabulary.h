@@ -32,9 +32,10 @@ struct VocabularyTree {
 
 class Vocabulary {
  public:
-  // Descriptors are grouped for matching by their node this far below the root: 100 groups in a
-  // tree of 10 branches.
-  static constexpr int kGroupLevel = 2;
+  // Descriptors are grouped for matching by their node this far below the root. The same point in
+  // two images falls into the same node of level 1, 2, 3 in 75, 51 and 33 % of the cases (TUM fr1,
+  // 12 frames apart); 10 groups cost 1/10 of comparing all with all, which is little enough.
+  static constexpr int kGroupLevel = 1;
 
   explicit Vocabulary(VocabularyTree tree);
 

@@ -1,0 +1,150 @@
+// msf-slam train-vocabulary and vocabulary-info.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "apps/command.h"
+#include "feature/orb_extractor.h"
+#include "io/image_reader.h"
+#include "place_recognition/vocabulary.h"
+#include "place_recognition/vocabulary_training.h"
+#include "util/progress.h"
+
+namespace msf {
+namespace {
+
+struct TrainArguments {
+  std::vector<std::string> images;
+  std::string file;
+  int num_features = 500;
+  VocabularyTrainingOptions training;
+};
+
+bool IsImage(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension == ".jpg" || extension == ".jpeg" || extension == ".png";
+}
+
+// The named files and all images in the named folders, sorted, so that the result does not depend
+// on the disk's order.
+std::vector<std::filesystem::path> ListImages(const std::vector<std::string>& names) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& name : names) {
+    if (!std::filesystem::exists(name))
+      throw CommandFailure(name + ": there is no such file or folder");
+    if (!std::filesystem::is_directory(name)) {
+      files.emplace_back(name);
+      continue;
+    }
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(name)) {
+      if (entry.is_regular_file() && IsImage(entry.path())) files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  return files;
+}
+
+std::vector<Descriptor> Describe(const cv::Mat& image, OrbExtractor& extractor) {
+  RgbdFrame frame;
+  frame.color = image;
+  frame.depth = cv::Mat(image.size(), CV_16UC1, cv::Scalar(0));
+  // Only descriptors are used, so any camera of the image's size will do.
+  frame.camera = std::make_shared<const Camera>(
+      Camera{.width = image.cols, .height = image.rows, .fx = 500, .fy = 500});
+  return extractor.Extract(frame).descriptors;
+}
+
+// Descriptors per readable image; the others are named on stderr.
+std::vector<std::vector<Descriptor>> DescribeAll(const std::vector<std::filesystem::path>& files,
+                                                 int num_features) {
+  OrbExtractor extractor({.num_features = num_features});
+  ImageReader reader;
+  Progress progress("train-vocabulary", "images", static_cast<int>(files.size()));
+  std::vector<std::vector<Descriptor>> images;
+  for (size_t i = 0; i < files.size(); ++i) {
+    const StatusOr<cv::Mat> image = reader.ReadColor(files[i]);
+    if (image.ok()) {
+      images.push_back(Describe(*image, extractor));
+    } else {
+      std::cerr << "left out: " << image.message() << "\n";
+    }
+    progress.Update(static_cast<int>(i + 1));
+  }
+  return images;
+}
+
+void Print(const Vocabulary& vocabulary, const std::filesystem::path& file) {
+  const VocabularyTree& tree = vocabulary.tree();
+  float least = 0, most = 0;
+  bool first = true;
+  for (int node = 0; node < tree.num_nodes(); ++node) {
+    if (!tree.IsWord(node)) continue;
+    least = first ? tree.weights[node] : std::min(least, tree.weights[node]);
+    most = first ? tree.weights[node] : std::max(most, tree.weights[node]);
+    first = false;
+  }
+  std::cout << fmt::format(
+      "{}\n  words      {}\n  nodes      {}\n  branching  {}\n  levels     {}\n  weights    {:.3f} "
+      "to {:.3f} "
+      "(ln of images / images with the word)\n  file size  {:.2f} MB\n",
+      file.string(), vocabulary.num_words(), tree.num_nodes(), tree.branching, tree.levels, least,
+      most, static_cast<double>(std::filesystem::file_size(file)) / 1e6);
+}
+
+void Train(const TrainArguments& arguments) {
+  Require(arguments.training.Check());
+  Require(OrbOptions{.num_features = arguments.num_features}.Check());
+  const std::vector<std::filesystem::path> files = ListImages(arguments.images);
+  if (files.empty()) throw CommandFailure("there is no JPEG or PNG image in the folders named");
+  const std::vector<std::vector<Descriptor>> images = DescribeAll(files, arguments.num_features);
+  size_t num_descriptors = 0;
+  for (const auto& image : images) num_descriptors += image.size();
+  std::cerr << fmt::format("{} descriptors of {} images\n", num_descriptors, images.size());
+  Progress progress("train-vocabulary", "steps", 1000);
+  const Vocabulary vocabulary = Require(
+      TrainVocabulary(images, arguments.training, [&](int done, int) { progress.Update(done); }));
+  Require(vocabulary.Save(arguments.file));
+  Print(vocabulary, arguments.file);
+}
+
+void ShowInfo(const std::string& file) {
+  const auto start = std::chrono::steady_clock::now();
+  const Vocabulary vocabulary = Require(Vocabulary::Load(file));
+  const std::chrono::duration<double, std::milli> elapsed =
+      std::chrono::steady_clock::now() - start;
+  Print(vocabulary, file);
+  std::cout << fmt::format("  load time  {:.1f} ms\n", elapsed.count());
+}
+
+}  // namespace
+
+void AddVocabularyCommands(CLI::App& app) {
+  CLI::App* train =
+      app.add_subcommand("train-vocabulary", "Train a place recognition vocabulary on images");
+  auto arguments = std::make_shared<TrainArguments>();
+  train->add_option("images", arguments->images, "image files and folders of images")->required();
+  train->add_option("--out", arguments->file, "vocabulary file to write")->required();
+  train->add_option("--branching", arguments->training.branching, "children of a node")
+      ->capture_default_str();
+  train->add_option("--levels", arguments->training.levels, "levels below the root")
+      ->capture_default_str();
+  train->add_option("--features", arguments->num_features, "points per image")
+      ->capture_default_str();
+  train->add_option("--seed", arguments->training.seed, "seed of the random choices")
+      ->capture_default_str();
+  train->callback([arguments] { Train(*arguments); });
+
+  CLI::App* info = app.add_subcommand("vocabulary-info", "Show what a vocabulary file holds");
+  auto file = std::make_shared<std::string>();
+  info->add_option("file", *file, "vocabulary file")->required();
+  info->callback([file] { ShowInfo(*file); });
+}
+
+}  // namespace msf
