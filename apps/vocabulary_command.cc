@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "apps/command.h"
+#include "apps/image_list.h"
 #include "feature/orb_extractor.h"
 #include "io/image_reader.h"
 #include "place_recognition/vocabulary.h"
@@ -18,37 +19,20 @@ namespace msf {
 namespace {
 
 struct TrainArguments {
-  std::vector<std::string> images;
+  std::vector<std::string> sources;
   std::string file;
   int num_features = 500;
   VocabularyTrainingOptions training;
 };
 
-bool IsImage(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension == ".jpg" || extension == ".jpeg" || extension == ".png";
-}
-
-// The named files and all images in the named folders, sorted, so that the result does not depend
-// on the disk's order.
-std::vector<std::filesystem::path> ListImages(const std::vector<std::string>& names) {
-  std::vector<std::filesystem::path> files;
-  for (const std::string& name : names) {
-    if (!std::filesystem::exists(name))
-      throw CommandFailure(name + ": there is no such file or folder");
-    if (!std::filesystem::is_directory(name)) {
-      files.emplace_back(name);
-      continue;
-    }
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(name)) {
-      if (entry.is_regular_file() && IsImage(entry.path())) files.push_back(entry.path());
-    }
+// All images of all sources.
+std::vector<std::filesystem::path> ListImages(const std::vector<std::string>& sources) {
+  std::vector<std::filesystem::path> images;
+  for (const std::string& source : sources) {
+    const std::vector<std::filesystem::path> more = Require(FindImages(source, {}));
+    images.insert(images.end(), more.begin(), more.end());
   }
-  std::sort(files.begin(), files.end());
-  files.erase(std::unique(files.begin(), files.end()), files.end());
-  return files;
+  return images;
 }
 
 std::vector<Descriptor> Describe(const cv::Mat& image, OrbExtractor& extractor) {
@@ -101,8 +85,7 @@ void Print(const Vocabulary& vocabulary, const std::filesystem::path& file) {
 void Train(const TrainArguments& arguments) {
   Require(arguments.training.Check());
   Require(OrbOptions{.num_features = arguments.num_features}.Check());
-  const std::vector<std::filesystem::path> files = ListImages(arguments.images);
-  if (files.empty()) throw CommandFailure("there is no JPEG or PNG image in the folders named");
+  const std::vector<std::filesystem::path> files = ListImages(arguments.sources);
   const std::vector<std::vector<Descriptor>> images = DescribeAll(files, arguments.num_features);
   size_t num_descriptors = 0;
   for (const auto& image : images) num_descriptors += image.size();
@@ -129,7 +112,10 @@ void AddVocabularyCommands(CLI::App& app) {
   CLI::App* train =
       app.add_subcommand("train-vocabulary", "Train a place recognition vocabulary on images");
   auto arguments = std::make_shared<TrainArguments>();
-  train->add_option("images", arguments->images, "image files and folders of images")->required();
+  train
+      ->add_option("images", arguments->sources,
+                   "images, folders of images, VOC data sets or RGB-D sequences")
+      ->required();
   train->add_option("--out", arguments->file, "vocabulary file to write")->required();
   train->add_option("--branching", arguments->training.branching, "children of a node")
       ->capture_default_str();
