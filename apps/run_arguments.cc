@@ -1,6 +1,7 @@
 #include "apps/run_arguments.h"
 
 #include "apps/command.h"
+#include "util/options.h"
 
 namespace msf {
 

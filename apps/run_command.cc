@@ -16,6 +16,7 @@
 #include "io/tum_dataset.h"
 #include "system/frame_prefetcher.h"
 #include "system/system.h"
+#include "util/options.h"
 #include "util/progress.h"
 
 namespace msf {

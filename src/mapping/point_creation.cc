@@ -27,9 +27,9 @@ struct Sight {
   int feature;
 
   const FrameFeatures& features() const { return *keyframe.features; }
-  Eigen::Vector3d Ray(const Camera& camera) const { return camera.Unproject(features().uv_px[feature].cast<double>(), 1); }
+  Eigen::Vector2d Position() const { return features().uv_px[feature].cast<double>(); }
   Eigen::Vector3d RayInWorld(const Camera& camera) const {
-    return (keyframe.T_cw.rotation().conjugate() * Ray(camera)).normalized();
+    return (keyframe.T_cw.rotation().conjugate() * camera.Unproject(Position(), 1)).normalized();
   }
   // Cosine of the angle under which the virtual stereo pair sees the point; 1 without depth.
   double StereoCosine(const Camera& camera) const {
@@ -47,7 +47,7 @@ std::optional<Eigen::Vector3d> Locate(const MappingOptions& options, const Camer
   const bool any_depth = stereo_a < 1 || stereo_b < 1;
   const bool wide = parallax_cosine > 0 && parallax_cosine < std::min(stereo_a, stereo_b);
   if (wide && (any_depth || parallax_cosine < options.max_parallax_cosine)) {
-    return TriangulatePoint(a.keyframe.T_cw, b.keyframe.T_cw, a.Ray(camera), b.Ray(camera));
+    return Triangulate(camera, a.keyframe.T_cw, a.Position(), b.keyframe.T_cw, b.Position());
   }
   if (!any_depth) return std::nullopt;
   return stereo_a < stereo_b ? a.PointInWorld(camera) : b.PointInWorld(camera);
