@@ -89,6 +89,7 @@ void AddSimulateCommand(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--set", arguments->settings,
                       "override the scenario, e.g. color.blur_samples=4");
+  command->footer("Keys of a scenario, with defaults:\n" + DescribeOptions<Scenario>());
   command->callback([arguments] { Simulate(*arguments); });
 }
 

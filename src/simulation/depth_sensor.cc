@@ -36,7 +36,7 @@ DepthSensor::DepthSensor(const DepthSensorOptions& options, const Camera& camera
     : options_(options), camera_(camera), noise_(kTile, kTile, CV_32FC1) {
   cv::RNG rng(random.Next());
   rng.fill(noise_, cv::RNG::NORMAL, 0, 1);
-  cv::GaussianBlur(noise_, noise_, {5, 5}, 0.8, 0.8, cv::BORDER_WRAP & cv::BORDER_REFLECT);
+  cv::GaussianBlur(noise_, noise_, {5, 5}, 0.8);
   cv::Scalar mean, deviation;
   cv::meanStdDev(noise_, mean, deviation);
   noise_ = (noise_ - mean[0]) / deviation[0];
@@ -70,53 +70,62 @@ void DepthSensor::MarkEdges(const cv::Mat& disparity, int y, uint8_t* edge) cons
 }
 
 cv::Mat DepthSensor::Measure(const RenderedView& view, Random random) const {
-  const int width = camera_.width, height = camera_.height;
-  const float bf = static_cast<float>(camera_.bf),
-              factor = static_cast<float>(camera_.depth_factor);
-  cv::Mat depth(height, width, CV_16UC1);
+  cv::Mat depth(camera_.height, camera_.width, CV_16UC1);
   if (options_.perfect) {
     view.depth_m.convertTo(depth, CV_16UC1, camera_.depth_factor);
     return depth;
   }
-  cv::Mat disparity(height, width, CV_32FC1);
-  for (int y = 0; y < height; ++y) {
+  cv::Mat disparity(camera_.height, camera_.width, CV_32FC1);
+  const float bf = static_cast<float>(camera_.bf);
+  for (int y = 0; y < disparity.rows; ++y) {
     const float* z = view.depth_m.ptr<float>(y);
     float* d = disparity.ptr<float>(y);
-    for (int x = 0; x < width; ++x) d[x] = z[x] > 0 ? bf / z[x] : 0;
+    for (int x = 0; x < disparity.cols; ++x) d[x] = z[x] > 0 ? bf / z[x] : 0;
   }
-  const float steps = static_cast<float>(options_.disparity_steps);
-  const float sigma_px = static_cast<float>(options_.noise_per_m) * bf;  // dz = z^2 / bf * dd
-  const float lowest = bf / static_cast<float>(options_.farthest_m),
-              highest = bf / std::max(0.01f, static_cast<float>(options_.nearest_m));
-  const float grazing = static_cast<float>(std::cos(options_.grazing_deg * std::numbers::pi / 180));
-  const int shift_x = random.Int(0, kTile - 1), shift_y = random.Int(0, kTile - 1);
-  std::vector<uint8_t> hidden(width, 0), edge(width);
-  for (int y = 0; y < height; ++y) {
-    const float* d_row = disparity.ptr<float>(y);
-    const float* cosine = view.cosine.ptr<float>(y);
-    const float* noise = noise_.ptr<float>((y + shift_y) % kTile);
-    uint16_t* out = depth.ptr<uint16_t>(y);
-    if (options_.shadow) FindShadow(d_row, hidden.data());
+  const cv::Point shift(random.Int(0, kTile - 1), random.Int(0, kTile - 1));
+  std::vector<uint8_t> hidden(camera_.width, 0), edge(camera_.width);
+  for (int y = 0; y < depth.rows; ++y) {
+    if (options_.shadow) FindShadow(disparity.ptr<float>(y), hidden.data());
     MarkEdges(disparity, y, edge.data());
-    for (int x = 0; x < width; ++x) {
-      out[x] = 0;
-      if (hidden[x]) continue;
-      float d = d_row[x];
-      if (edge[x]) {
-        // The matching window sees both sides: either none or a neighbour's depth comes out.
-        if (random.Chance(options_.edge_dropout)) continue;
-        const int neighbor_x = std::clamp(x + random.Int(-1, 1), 0, width - 1);
-        d = disparity.at<float>(std::clamp(y + random.Int(-1, 1), 0, height - 1), neighbor_x);
-      }
-      if (d <= 0) continue;
-      if (cosine[x] < grazing && random.Chance(1.2 * (1 - cosine[x] / grazing))) continue;
-      d += sigma_px * noise[(x + shift_x) % kTile];
-      d = std::floor(d * steps + 0.5f) / steps;
-      if (d < lowest || d > highest) continue;
-      out[x] = static_cast<uint16_t>(std::min(65535.f, bf / d * factor + 0.5f));
-    }
+    const Row row{y,
+                  hidden.data(),
+                  edge.data(),
+                  view.cosine.ptr<float>(y),
+                  noise_.ptr<float>((y + shift.y) % kTile),
+                  shift.x};
+    MeasureRow(disparity, row, random, depth.ptr<uint16_t>(y));
   }
   return depth;
+}
+
+void DepthSensor::MeasureRow(const cv::Mat& disparity, const Row& row, Random& random,
+                             uint16_t* depth) const {
+  const float bf = static_cast<float>(camera_.bf),
+              factor = static_cast<float>(camera_.depth_factor);
+  const float steps = static_cast<float>(options_.disparity_steps);
+  const float sigma_px = static_cast<float>(options_.noise_per_m) * bf;  // dz = z^2 / bf * dd
+  const float lowest = bf / static_cast<float>(options_.farthest_m);
+  const float highest = bf / std::max(0.01f, static_cast<float>(options_.nearest_m));
+  const float grazing = static_cast<float>(std::cos(options_.grazing_deg * std::numbers::pi / 180));
+  const float* disparities = disparity.ptr<float>(row.y);
+  for (int x = 0; x < disparity.cols; ++x) {
+    depth[x] = 0;
+    if (row.hidden[x]) continue;
+    float d = disparities[x];
+    if (row.edge[x]) {
+      // The matching window sees both sides: either none or a neighbour's depth comes out.
+      if (random.Chance(options_.edge_dropout)) continue;
+      const int neighbor_x = std::clamp(x + random.Int(-1, 1), 0, disparity.cols - 1);
+      d = disparity.at<float>(std::clamp(row.y + random.Int(-1, 1), 0, disparity.rows - 1),
+                              neighbor_x);
+    }
+    if (d <= 0) continue;
+    if (row.cosine[x] < grazing && random.Chance(1.2 * (1 - row.cosine[x] / grazing))) continue;
+    d += sigma_px * row.noise[(x + row.noise_shift) % kTile];
+    d = std::floor(d * steps + 0.5f) / steps;
+    if (d < lowest || d > highest) continue;
+    depth[x] = static_cast<uint16_t>(std::min(65535.f, bf / d * factor + 0.5f));
+  }
 }
 
 }  // namespace msf

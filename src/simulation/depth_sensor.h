@@ -45,9 +45,19 @@ class DepthSensor {
   cv::Mat Measure(const RenderedView& view, Random random) const;
 
  private:
-  struct Row;
+  // What is known about the pixels of one row.
+  struct Row {
+    int y;
+    const uint8_t* hidden;
+    const uint8_t* edge;
+    const float* cosine;
+    const float* noise;
+    int noise_shift;
+  };
   void FindShadow(const float* disparity, uint8_t* hidden) const;
   void MarkEdges(const cv::Mat& disparity, int y, uint8_t* edge) const;
+
+  void MeasureRow(const cv::Mat& disparity, const Row& row, Random& random, uint16_t* depth) const;
 
   DepthSensorOptions options_;
   Camera camera_;

@@ -94,19 +94,43 @@ void AddLimb(Mesh& mesh, float length, const std::vector<float>& radii, const Te
 Mannequin::Mannequin(SceneBuilder& builder) {
   Random random = builder.NextRandom();
   const cv::Scalar skins[] = {{150, 180, 224}, {120, 158, 205}, {82, 118, 168}, {55, 80, 120}};
-  const cv::Scalar skin_color = skins[random.Int(0, 3)];
   const cv::Scalar hairs[] = {{28, 32, 40}, {40, 62, 92}, {70, 120, 165}};
   const cv::Scalar trousers[] = {{110, 72, 42}, {52, 52, 56}, {80, 110, 130}, {60, 80, 66}};
-  const auto texture = [&](const cv::Mat& picture) { return builder.AddTexture(picture); };
-  const TextureArea skin = texture(PaintMetal({64, 64}, skin_color, random.Fork(1)));
-  const TextureArea face =
-      texture(PaintHead({512, 384}, skin_color, hairs[random.Int(0, 2)], random.Fork(2)));
-  const cv::Scalar shirt_color = VividColor(random), trouser_color = trousers[random.Int(0, 3)];
-  const TextureArea shirt = texture(PaintShirt({480, 280}, shirt_color, random.Fork(3)));
-  const TextureArea sleeve = texture(PaintFabric({140, 180}, shirt_color, random.Fork(4)));
-  const TextureArea cloth = texture(PaintTrousers({220, 240}, trouser_color, random.Fork(5)));
-  const TextureArea leather = texture(PaintTrousers({180, 80}, {50, 55, 70}, random.Fork(6)));
+  const cv::Scalar skin_color = skins[random.Int(0, 3)], shirt_color = VividColor(random);
+  const TextureArea skin = builder.AddTexture(PaintMetal({64, 64}, skin_color, random.Fork(1)));
+  const TextureArea face = builder.AddTexture(
+      PaintHead({512, 384}, skin_color, hairs[random.Int(0, 2)], random.Fork(2)));
+  const TextureArea shirt = builder.AddTexture(PaintShirt({480, 280}, shirt_color, random.Fork(3)));
+  const TextureArea sleeve =
+      builder.AddTexture(PaintFabric({140, 180}, shirt_color, random.Fork(4)));
+  const TextureArea cloth =
+      builder.AddTexture(PaintTrousers({220, 240}, trousers[random.Int(0, 3)], random.Fork(5)));
+  const TextureArea leather =
+      builder.AddTexture(PaintTrousers({180, 80}, {50, 55, 70}, random.Fork(6)));
 
+  AddTrunk(shirt, cloth);
+  AddHead(face, skin);
+  AddLimb(upper_arm_, static_cast<float>(body::kUpperArm), {0.044f, 0.05f, 0.056f, 0.06f}, sleeve);
+  AddLimb(forearm_, static_cast<float>(body::kForearm), {0.028f, 0.036f, 0.042f, 0.04f},
+          random.Chance(0.5) ? sleeve : skin);
+  const float wrist = -static_cast<float>(body::kForearm);
+  forearm_.AddLoft({{{0, 0, wrist - 0.17f}, 0.012f, 0.02f},
+                    {{0, 0, wrist - 0.11f}, 0.018f, 0.042f},
+                    {{0, 0, wrist - 0.05f}, 0.02f, 0.044f},
+                    {{0, 0, wrist + 0.02f}, 0.025f, 0.027f}},
+                   skin, 10);
+  AddLimb(thigh_, static_cast<float>(body::kThigh), {0.06f, 0.072f, 0.084f, 0.088f}, cloth);
+  AddLimb(shank_, static_cast<float>(body::kShank), {0.045f, 0.054f, 0.062f, 0.06f}, cloth);
+  const float sole = -static_cast<float>(body::kAnkleHeight);
+  shoe_.AddLoft({{{0, -0.06f, sole}, 0, 0},
+                 {{0, -0.06f, sole + 0.001f}, 0.045f, 0.135f},
+                 {{0, -0.06f, sole + 0.035f}, 0.045f, 0.135f},
+                 {{0, -0.04f, sole + 0.065f}, 0.042f, 0.1f},
+                 {{0, 0, 0.03f}, 0.042f, 0.05f}},
+                leather, 16);
+}
+
+void Mannequin::AddTrunk(const TextureArea& shirt, const TextureArea& cloth) {
   trunk_.AddLoft({{{0, 0, -0.06f}, 0.16f, 0.115f},
                   {{0, 0, 0.06f}, 0.155f, 0.112f},
                   {{0, 0, 0.18f}, 0.148f, 0.105f},
@@ -120,6 +144,9 @@ Mannequin::Mannequin(SceneBuilder& builder) {
                    {{0, 0, -0.08f}, 0.165f, 0.12f},
                    {{0, 0, 0.05f}, 0.16f, 0.117f}},
                   cloth, 18);
+}
+
+void Mannequin::AddHead(const TextureArea& face, const TextureArea& skin) {
   neck_.AddLoft({{{0, 0, -0.02f}, 0.058f, 0.058f}, {{0, 0, 0.1f}, 0.052f, 0.055f}}, skin, 12);
   head_.AddLoft({{{0, -0.02f, 0.04f}, 0.02f, 0.03f},
                  {{0, -0.02f, 0.06f}, 0.05f, 0.065f},
@@ -131,30 +158,11 @@ Mannequin::Mannequin(SceneBuilder& builder) {
                  {{0, 0.006f, 0.288f}, 0, 0}},
                 face, 24);
   head_.AddLoft({{{0, -0.105f, 0.135f}, 0.016f, 0.016f}, {{0, -0.095f, 0.18f}, 0.006f, 0.008f}},
-                skin, 8);
+                skin, 8);  // nose
   for (const float ear : {-0.075f, 0.075f}) {
     head_.AddLoft({{{ear, 0.005f, 0.135f}, 0.008f, 0.012f}, {{ear, 0.005f, 0.185f}, 0.01f, 0.02f}},
                   skin, 8);
   }
-  AddLimb(upper_arm_, static_cast<float>(body::kUpperArm), {0.044f, 0.05f, 0.056f, 0.06f}, sleeve);
-  AddLimb(forearm_, static_cast<float>(body::kForearm), {0.028f, 0.036f, 0.042f, 0.04f},
-          random.Chance(0.5) ? sleeve : skin);
-  Mesh hand;
-  hand.AddLoft({{{0, 0, -0.17f}, 0.012f, 0.02f},
-                {{0, 0, -0.11f}, 0.018f, 0.042f},
-                {{0, 0, -0.05f}, 0.02f, 0.044f},
-                {{0, 0, 0.02f}, 0.025f, 0.027f}},
-               skin, 10);
-  forearm_.Append(hand, Pose(Eigen::Matrix3d::Identity(), {0, 0, -body::kForearm}));
-  AddLimb(thigh_, static_cast<float>(body::kThigh), {0.06f, 0.072f, 0.084f, 0.088f}, cloth);
-  AddLimb(shank_, static_cast<float>(body::kShank), {0.045f, 0.054f, 0.062f, 0.06f}, cloth);
-  const float sole = -static_cast<float>(body::kAnkleHeight);
-  shoe_.AddLoft({{{0, -0.06f, sole}, 0, 0},
-                 {{0, -0.06f, sole + 0.001f}, 0.045f, 0.135f},
-                 {{0, -0.06f, sole + 0.035f}, 0.045f, 0.135f},
-                 {{0, -0.04f, sole + 0.065f}, 0.042f, 0.1f},
-                 {{0, 0, 0.03f}, 0.042f, 0.05f}},
-                leather, 16);
 }
 
 Mesh Mannequin::Posed(const BodyPose& pose) const {

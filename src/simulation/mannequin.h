@@ -18,6 +18,9 @@ class Mannequin {
   static Eigen::Vector3d BetweenHands(const BodyPose& pose);
 
  private:
+  void AddTrunk(const TextureArea& shirt, const TextureArea& cloth);
+  void AddHead(const TextureArea& face, const TextureArea& skin);
+
   // Limbs hang down from their joint at the origin, front towards -y.
   Mesh trunk_, pelvis_, neck_, head_;
   Mesh upper_arm_, forearm_, thigh_, shank_, shoe_;

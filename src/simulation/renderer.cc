@@ -104,11 +104,12 @@ void Renderer::ShadeRun(const ProjectedTriangle& triangle, int begin, int end, i
   const float light0 = static_cast<float>(triangle.light.At(begin, row));
   const float u_step = static_cast<float>(triangle.u.a), v_step = static_cast<float>(triangle.v.a);
   const float light_step = static_cast<float>(triangle.light.a);
+  float lod = 0;
   for (int x = begin; x < end; ++x) {
     const float t = static_cast<float>(x - begin);
     const float z = 1 / (iz0 + t * gradients.iz_x);
     const float u = (u0 + t * u_step) * z, v = (v0 + t * v_step) * z;
-    const float lod = gradients.Lod(z, u * width, v * height);
+    if ((x - begin) % 4 == 0) lod = gradients.Lod(z, u * width, v * height);  // it changes slowly
     colors[x] = texture.Sample(u, v, lod) * ((light0 + t * light_step) * z);
   }
 }
@@ -126,15 +127,26 @@ Color4f Renderer::Shade(const ProjectedTriangle& triangle, double x, double y) c
 }
 
 Color4f Renderer::ShadeMixed(const int* upper, const int* lower, int column, int row) const {
+  const int indices[4] = {upper[2 * column], upper[2 * column + 1], lower[2 * column],
+                          lower[2 * column + 1]};
   Color4f sum = {};
+  bool done[4] = {};
   for (int i = 0; i < 4; ++i) {
-    const int sample_x = 2 * column + i % 2;
-    const int index = (i < 2 ? upper : lower)[sample_x];
-    if (index < 0) continue;
-    sum += Shade(rasterizer_.triangles()[index], Rasterizer::SamplePosition(sample_x),
-                 Rasterizer::SamplePosition(2 * row + i / 2));
+    if (done[i] || indices[i] < 0) continue;
+    // Once for all samples of a triangle, in their middle.
+    int count = 0;
+    double x = 0, y = 0;
+    for (int j = i; j < 4; ++j) {
+      if (indices[j] != indices[i]) continue;
+      done[j] = true;
+      ++count;
+      x += Rasterizer::SamplePosition(2 * column + j % 2);
+      y += Rasterizer::SamplePosition(2 * row + j / 2);
+    }
+    const ProjectedTriangle& triangle = rasterizer_.triangles()[indices[i]];
+    sum += Shade(triangle, x / count, y / count) * (0.25f * static_cast<float>(count));
   }
-  return sum * 0.25f;
+  return sum;
 }
 
 void Renderer::MeasureRow(int row, RenderedView& view) const {

@@ -54,6 +54,33 @@ TEST(Options, YamlRoundTrip) {
   EXPECT_NE(DescribeOptions<OuterOptions>().find("inner.radius_px"), std::string::npos);
 }
 
+struct ListOptions {
+  std::vector<InnerOptions> parts;
+  template <typename Visitor>
+  void Visit(Visitor& visit) {
+    visit("parts", parts, "several of them");
+  }
+};
+
+TEST(Options, ListsOfSectionsAreReadWrittenAndChecked) {
+  InnerOptions inner;
+  const YAML::Node one = OptionsToYaml(inner);
+  YAML::Node node;
+  node["parts"].push_back(YAML::Clone(one));
+  node["parts"].push_back(YAML::Clone(one));
+  ListOptions options;
+  ASSERT_TRUE(ReadOptions(node, options).ok());
+  EXPECT_EQ(options.parts.size(), 2u);
+  EXPECT_EQ(OptionsToYaml(options)["parts"].size(), 2u);
+  EXPECT_NE(DescribeOptions(options).find("parts[]."), std::string::npos);
+
+  node["parts"][1]["colour"] = 3;
+  const Status status = ReadOptions(node, options);
+  ASSERT_FALSE(status.ok());
+  EXPECT_NE(status.message().find("parts[1]"), std::string::npos);
+  EXPECT_FALSE(ReadOptions(YAML::Load("{parts: 7}"), options).ok());
+}
+
 TEST(AtomicFile, FailedWriteLeavesTheOldFile) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "atomic_file";
   std::filesystem::create_directories(folder);
