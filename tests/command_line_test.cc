@@ -1,0 +1,108 @@
+// The program as a user meets it: what it prints, what it writes, how it fails.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "io/test_folder.h"
+#include "io/trajectory.h"
+
+namespace msf {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+struct Outcome {
+  int exit_code = -1;
+  std::string output;  // stdout and stderr
+};
+
+Outcome RunProgram(const std::string& arguments) {
+  const std::string command = std::string(MSF_PROGRAM) + " " + arguments + " 2>&1";
+  Outcome outcome;
+  FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return outcome;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe))
+    outcome.output.push_back(static_cast<char>(c));
+  const int status = pclose(pipe);
+  if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
+  return outcome;
+}
+
+// A user's mistake: one sentence, no crash.
+void ExpectSentence(const Outcome& outcome, const std::string& what) {
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.output;
+  EXPECT_THAT(outcome.output, AllOf(testing::StartsWith("msf-slam: "), HasSubstr(what),
+                                    Not(HasSubstr("internal error"))));
+}
+
+Trajectory Spiral() {
+  Trajectory t;
+  for (int i = 0; i < 100; ++i) {
+    t.push_back(
+        {0.1 * i, Rigid3d(ExpRotation({0, 0, 0.02 * i}),
+                          Eigen::Vector3d(std::cos(0.1 * i), std::sin(0.1 * i), 0.01 * i))});
+  }
+  return t;
+}
+
+TEST(CommandLine, HelpNamesTheCommands) {
+  const Outcome outcome = RunProgram("--help");
+  EXPECT_EQ(outcome.exit_code, 0);
+  for (const char* command : {"evaluate", "simulate"})
+    EXPECT_THAT(outcome.output, HasSubstr(command));
+  EXPECT_NE(RunProgram("").exit_code, 0);
+  EXPECT_NE(RunProgram("no-such-command").exit_code, 0);
+}
+
+TEST(CommandLine, EvaluatePrintsAndWrites) {
+  const TestFolder folder;
+  ASSERT_TRUE(WriteTrajectory(folder / "truth.txt", Spiral()).ok());
+  Trajectory estimate = Spiral();
+  for (size_t i = 0; i < estimate.size(); i += 2) {
+    estimate[i].T_wc = Rigid3d(estimate[i].T_wc.rotation(),
+                               estimate[i].T_wc.translation() + Eigen::Vector3d(0, 0, 0.02));
+  }
+  ASSERT_TRUE(WriteTrajectory(folder / "run.txt", estimate).ok());
+  const std::string path = folder.path().string() + "/";
+  const Outcome outcome =
+      RunProgram("evaluate " + path + "truth.txt " + path + "run.txt " + path +
+                 "truth.txt --frames 200 --json " + path + "e.json --plots " + path + "plots");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("50.0 %"), HasSubstr("run"), HasSubstr("truth"),
+                                    HasSubstr("ATE [m]")));
+  const nlohmann::json json = nlohmann::json::parse(ReadWholeFile(folder / "e.json"));
+  EXPECT_NEAR(json.at("estimates").at(0).at("ate_m").at("rmse").get<double>(), 0.01, 1e-4);
+  EXPECT_NEAR(json.at("estimates").at(1).at("ate_m").at("rmse").get<double>(), 0, 1e-6);
+  EXPECT_TRUE(std::filesystem::exists(folder / "plots/trajectory.svg"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "plots/error.svg"));
+}
+
+TEST(CommandLine, EvaluateExplainsMistakes) {
+  const TestFolder folder;
+  ASSERT_TRUE(WriteTrajectory(folder / "truth.txt", Spiral()).ok());
+  folder.Write("nan.txt", "1 0 0 0 0 0 0 1\n2 nan 0 0 0 0 0 1\n");
+  folder.Write("late.txt", "1000 0 0 0 0 0 0 1\n");
+  const std::string path = folder.path().string() + "/";
+  const std::string truth = path + "truth.txt ";
+  ExpectSentence(RunProgram("evaluate " + truth + path + "absent.txt"),
+                 "absent.txt: cannot be opened");
+  ExpectSentence(RunProgram("evaluate " + path + "nan.txt " + truth), "nan.txt:2: 'nan'");
+  ExpectSentence(RunProgram("evaluate " + truth + path + "late.txt"), "0 of 1 poses");
+  ExpectSentence(RunProgram("evaluate " + truth + truth + "--dataset " + path),
+                 "rgb.txt and depth.txt");
+  ExpectSentence(RunProgram("evaluate " + truth + truth + "--json " + path + "no/e.json"),
+                 "no/e.json");
+  EXPECT_NE(RunProgram("evaluate " + truth).exit_code, 0);
+  EXPECT_NE(RunProgram("evaluate " + truth + truth + "--frames 5 --dataset " + path).exit_code, 0);
+}
+
+}  // namespace
+}  // namespace msf
