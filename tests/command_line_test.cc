@@ -39,7 +39,7 @@ Outcome RunProgram(const std::string& arguments) {
 // A user's mistake: one sentence, no crash.
 void ExpectSentence(const Outcome& outcome, const std::string& what) {
   EXPECT_EQ(outcome.exit_code, 1) << outcome.output;
-  EXPECT_THAT(outcome.output, AllOf(testing::StartsWith("msf-slam: "), HasSubstr(what),
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("msf-slam: "), HasSubstr(what),
                                     Not(HasSubstr("internal error"))));
 }
 

@@ -15,7 +15,8 @@ run("installing" ${CMAKE_COMMAND} --install ${BUILD_FOLDER} --prefix ${prefix})
 run("configuring the consumer" ${CMAKE_COMMAND} -S ${SOURCE_FOLDER}/tests/consumer -B ${WORK_FOLDER}/build -G Ninja
     -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_PREFIX_PATH=${prefix})
 run("building the consumer" ${CMAKE_COMMAND} --build ${WORK_FOLDER}/build)
-run("running the consumer" ${WORK_FOLDER}/build/consumer)
+# The data must come from the installation, not from the source tree.
+run("running the consumer" ${CMAKE_COMMAND} -E env MSF_SLAM_DATA=${prefix}/share/msf_slam ${WORK_FOLDER}/build/consumer)
 message(STATUS "${output}")
 
 run("ldd" ldd ${WORK_FOLDER}/build/consumer)
