@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kWidth = 960, kLeft = 76, kRight = 24, kTop = 66, kLegendRow = 18, kPanel = 170,
                  kRow = 246;
-constexpr double kLineBreak_s = 0.5;
 
 struct Panel {
   const char* title;

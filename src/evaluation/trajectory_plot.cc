@@ -12,7 +12,6 @@
 namespace msf {
 namespace {
 
-constexpr double kLineBreak_s = 0.5;  // a longer silence interrupts a line
 constexpr int kColorLevels = 32;
 constexpr Stroke kTruthStroke = {{0x8a, 0x8a, 0x8a}, 1.6, "5 3"};
 constexpr double kRow = 516, kPanel = 390, kPanelTop = 76, kPanelLeft = 74, kBetween = 92;

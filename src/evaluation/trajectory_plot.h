@@ -8,6 +8,9 @@
 
 namespace msf {
 
+// A longer silence of an estimate interrupts its lines.
+inline constexpr double kLineBreak_s = 0.5;
+
 // Each estimate over the true trajectory, from above (x, y) and from the side (x, z), its colour
 // saying the absolute error; one row per estimate with a common colour scale. An SVG file's text.
 // There must be an estimate.
