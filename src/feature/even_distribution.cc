@@ -16,6 +16,19 @@ struct Cell {
   bool Divisible() const { return size() > 1 && (x1 - x0 > 1 || y1 - y0 > 1); }
 };
 
+// Strictly ordered, so that a choice among equals does not depend on the order they come in.
+bool Stronger(const Corner& a, const Corner& b) {
+  if (a.score != b.score) return a.score > b.score;
+  return a.y != b.y ? a.y < b.y : a.x < b.x;
+}
+
+// The `count` strongest, in unspecified but reproducible order.
+void KeepStrongest(int count, std::vector<Corner>& corners) {
+  if (static_cast<int>(corners.size()) <= count) return;
+  std::nth_element(corners.begin(), corners.begin() + count, corners.end(), Stronger);
+  corners.resize(count);
+}
+
 class Quadtree {
  public:
   Quadtree(const cv::Rect& area, int count, std::vector<Corner>& corners)
@@ -23,22 +36,18 @@ class Quadtree {
     AddRoots(area);
   }
 
-  std::vector<Corner> Select() {
+  // Puts each cell's strongest corner first in the cell's part of the list; returns their indices.
+  std::vector<int> Select() {
     while (SplitRound()) {
     }
-    std::vector<Corner> strongest;
-    strongest.reserve(cells_.size());
-    const auto weaker = [](const Corner& a, const Corner& b) { return a.score < b.score; };
+    std::vector<int> chosen;
+    chosen.reserve(cells_.size());
     for (const Cell& cell : cells_) {
-      strongest.push_back(
-          *std::max_element(corners_.begin() + cell.begin, corners_.begin() + cell.end, weaker));
+      const auto begin = corners_.begin() + cell.begin, end = corners_.begin() + cell.end;
+      std::iter_swap(begin, std::min_element(begin, end, Stronger));
+      chosen.push_back(cell.begin);
     }
-    if (static_cast<int>(strongest.size()) > count_) {  // more roots than points wanted
-      std::stable_sort(strongest.begin(), strongest.end(),
-                       [&](const Corner& a, const Corner& b) { return weaker(b, a); });
-      strongest.resize(std::max(count_, 0));
-    }
-    return strongest;
+    return chosen;
   }
 
  private:
@@ -127,10 +136,18 @@ class Quadtree {
 
 }  // namespace
 
-std::vector<Corner> DistributeEvenly(const cv::Rect& area, int count,
+std::vector<Corner> DistributeEvenly(const cv::Rect& area, int count, double even_share,
                                      std::vector<Corner>& corners) {
   if (count <= 0 || corners.empty()) return {};
-  return Quadtree(area, count, corners).Select();
+  const int num_even = std::clamp(static_cast<int>(std::lround(even_share * count)), 1, count);
+  std::vector<bool> taken(corners.size(), false);
+  for (const int i : Quadtree(area, num_even, corners).Select()) taken[i] = true;
+  std::vector<Corner> chosen, rest;
+  for (size_t i = 0; i < corners.size(); ++i) (taken[i] ? chosen : rest).push_back(corners[i]);
+  KeepStrongest(count, chosen);  // the first cells may be more than the points wanted
+  KeepStrongest(count - static_cast<int>(chosen.size()), rest);
+  chosen.insert(chosen.end(), rest.begin(), rest.end());
+  return chosen;
 }
 
 }  // namespace msf

@@ -8,10 +8,12 @@
 
 namespace msf {
 
-// At most `count` of the corners of `area`: the area is cut into quarters again and again, coarse
-// cells before fine ones and among equals the fullest first, until there are `count` cells that
-// hold a corner; each keeps its strongest. Reorders `corners`; the result depends on nothing but
-// their set and order.
-std::vector<Corner> DistributeEvenly(const cv::Rect& area, int count, std::vector<Corner>& corners);
+// At most `count` of the corners of `area`. `even_share` of them are spread evenly: the area is cut
+// into quarters again and again, all cells of one size before the next and the fullest first, until
+// that many cells hold a corner; each gives its strongest. The rest are the strongest that are
+// left: found again more often, they make poses more exact, while the even ones keep every part of
+// the picture in use. Reorders `corners`; the result depends on nothing but their set and order.
+std::vector<Corner> DistributeEvenly(const cv::Rect& area, int count, double even_share,
+                                     std::vector<Corner>& corners);
 
 }  // namespace msf

@@ -46,6 +46,8 @@ Status OrbOptions::Check() const {
     return Status::Error("feature: 1 <= min_fast_threshold <= fast_threshold <= 254 is needed");
   }
   if (cell_size_px < 1) return Status::Error("feature.cell_size_px must be at least 1");
+  if (!(even_share >= 0 && even_share <= 1))
+    return Status::Error("feature.even_share must be from 0 to 1");
   return Status::Ok();
 }
 
@@ -99,7 +101,7 @@ void OrbExtractor::ExtractLevel(int level, int quota, FrameFeatures& features) {
   corners.clear();
   FindScorePeaks(scores, area, options_.min_fast_threshold, corners);
   KeepStrongPerCell(area, options_.cell_size_px, options_.fast_threshold, corners);
-  const std::vector<Corner> chosen = DistributeEvenly(area, quota, corners);
+  const std::vector<Corner> chosen = DistributeEvenly(area, quota, options_.even_share, corners);
   if (chosen.empty()) return;
 
   SmoothForDescriptors(image, buffers_->smoothed);

@@ -18,6 +18,7 @@ struct OrbOptions {
   int fast_threshold = 20;
   int min_fast_threshold = 7;
   int cell_size_px = 35;
+  double even_share = 0.7;
   bool subpixel = true;
 
   template <typename Visitor>
@@ -29,6 +30,8 @@ struct OrbOptions {
     visit("min_fast_threshold", min_fast_threshold,
           "FAST contrast in cells where the first finds nothing");
     visit("cell_size_px", cell_size_px, "cell of the FAST search, px");
+    visit("even_share", even_share,
+          "share of the points that is spread evenly; the rest are the strongest left, 0..1");
     visit("subpixel", subpixel, "locate corners to fractions of a pixel");
   }
   Status Check() const;
