@@ -16,7 +16,7 @@ namespace msf {
 // with the patch.
 struct NoiseOptions {
   double position_sigma_px = 1.0;
-  double disparity_sigma_px = 0.2;
+  double disparity_sigma_px = 0.15;
   double disparity_level_share = 1.0;
   double disparity_knee = 2.5;
 

@@ -6,16 +6,24 @@
 #include "loop_closing/full_bundle.h"
 #include "system/worker.h"
 #include "tracking/tracker.h"
+#include "util/data_path.h"
 
 namespace msf {
 namespace {
 
+constexpr const char* kShippedVocabulary = "models/vocabulary.msfvoc";
 constexpr size_t kMappingQueue = 8;
 constexpr size_t kLoopClosingQueue = 64;
 constexpr size_t kFullBundleQueue = 4;
 
 StatusOr<std::shared_ptr<const Vocabulary>> LoadVocabulary(const std::string& file) {
-  StatusOr<Vocabulary> vocabulary = Vocabulary::Load(file);
+  std::filesystem::path path = file;
+  if (file.empty()) {
+    StatusOr<std::filesystem::path> shipped = FindDataFile(kShippedVocabulary);
+    if (!shipped.ok()) return shipped.status();
+    path = *shipped;
+  }
+  StatusOr<Vocabulary> vocabulary = Vocabulary::Load(path);
   if (!vocabulary.ok()) return vocabulary.status();
   return std::make_shared<const Vocabulary>(*std::move(vocabulary));
 }

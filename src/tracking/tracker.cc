@@ -119,12 +119,20 @@ bool Tracker::RefineWithLocalMap(TrackingResult& result) {
   for (const PointMatch& match : matches_) frame_.points[match.feature] = match.point;
   local_map_.Update(*map_.Read(), frame_, options.max_local_keyframes, options.max_neighbours);
   const bool fresh = frame_.image->time_s - relocalized_time_s_ < kFreshlyRelocalized_s;
-  const double radius_factor = fresh ? options.local_radius_factor_relocalized : options.local_radius_factor;
-  const LocalMatches local =
-      MatchLocalPoints(context_, local_map_.points(), *frame_.features, frame_.T_cw, matches_, radius_factor);
-  matches_.insert(matches_.end(), local.matches.begin(), local.matches.end());
   const int min_inliers = fresh ? options.min_local_inliers_relocalized : options.min_local_inliers;
-  const bool tracked = OptimizeFramePose(context_, *frame_.features, min_inliers, matches_, frame_.T_cw);
+  double radius_factor = fresh ? options.local_radius_factor_relocalized : options.local_radius_factor;
+  std::vector<MapPointId> expected;
+  bool tracked = true;
+  // The first search starts from a prediction and finds what pulls the pose into place; the second one starts there, so that points
+  // which a fast turn or a poor first pose had put too far away are found as well.
+  for (int round = 0; round < options.local_search_rounds && tracked; ++round) {
+    LocalMatches local =
+        MatchLocalPoints(context_, local_map_.points(), *frame_.features, frame_.T_cw, matches_, radius_factor);
+    expected = std::move(local.expected);
+    matches_.insert(matches_.end(), local.matches.begin(), local.matches.end());
+    tracked = OptimizeFramePose(context_, *frame_.features, min_inliers, matches_, frame_.T_cw);
+    radius_factor = options.local_radius_factor_refined;
+  }
   result.num_inliers = static_cast<int>(matches_.size());
   TakeMatches(matches_);
   if (!local_map_.best_keyframe().valid()) return false;
@@ -132,7 +140,7 @@ bool Tracker::RefineWithLocalMap(TrackingResult& result) {
   frame_.T_c_reference = frame_.T_cw * local_map_.T_cw_best_keyframe().Inverse();
 
   SharedMap::Writer map = map_.Write();
-  for (const MapPointId id : local.expected) {
+  for (const MapPointId id : expected) {
     if (map->FindPoint(id)) map->CountVisible(id);
   }
   for (const PointMatch& match : matches_) {

@@ -9,6 +9,7 @@ Status TrackingOptions::Check() const {
     return Status::Error("tracking: search radii must be positive");
   }
   if (max_local_keyframes < 1) return Status::Error("tracking.max_local_keyframes must be at least 1");
+  if (local_search_rounds < 1) return Status::Error("tracking.local_search_rounds must be at least 1");
   if (recently_lost_s < 0) return Status::Error("tracking.recently_lost_s must not be negative");
   if (keyframe.max_interval_s <= 0) return Status::Error("tracking.keyframe.max_interval_s must be positive");
   return pose.Check();

@@ -40,6 +40,8 @@ struct TrackingOptions {
   int max_neighbours = 10;
   double local_radius_factor = 5;
   double local_radius_factor_relocalized = 5;
+  double local_radius_factor_refined = 3;
+  int local_search_rounds = 2;
   double local_match_ratio = 0.8;
   int min_local_inliers = 30;
   int min_local_inliers_relocalized = 50;
@@ -62,6 +64,8 @@ struct TrackingOptions {
     visit("max_neighbours", max_neighbours, "covisible keyframes that each keyframe adds to the local map");
     visit("local_radius_factor", local_radius_factor, "factor on the search radius in the local map");
     visit("local_radius_factor_relocalized", local_radius_factor_relocalized, "the same just after relocalisation");
+    visit("local_radius_factor_refined", local_radius_factor_refined, "the same in the rounds after the first");
+    visit("local_search_rounds", local_search_rounds, "searches of the local map, each followed by an optimisation");
     visit("local_match_ratio", local_match_ratio, "best to second best at the same level, matching the local map");
     visit("min_local_inliers", min_local_inliers, "inliers with which a frame counts as tracked");
     visit("min_local_inliers_relocalized", min_local_inliers_relocalized, "the same within a second of relocalisation");
