@@ -100,5 +100,87 @@ TEST(CompiledNetwork, AgreesLooselyInBfloat16) {
   EXPECT_GT(error, 1e-6f);  // otherwise it did not run in bfloat16
 }
 
+// The graph with ranges from its own values on the test image.
+Graph Calibrated(Graph graph, CompileOptions options) {
+  const Tensor image = TestImage(options.height, options.width);
+  options.precision = NetworkPrecision::kFloat32;
+  options.keep_values = true;
+  options.float_input = true;
+  const auto network = Compile(graph, options);
+  std::copy(image.floats.begin(), image.floats.end(), network->float_input());
+  EXPECT_TRUE(network->Run().ok());
+  ActivationRanges ranges;
+  network->VisitValues([&](const std::string& name, std::span<const float> numbers) {
+    ranges[name] = {*std::min_element(numbers.begin(), numbers.end()), *std::max_element(numbers.begin(), numbers.end())};
+  });
+  graph.metadata[kActivationRangesKey] = FormatActivationRanges(ranges);
+  return graph;
+}
+
+// A network around one feature: 3x3 convolution with SiLU, `middle`, 3x3 convolution with SiLU, head.
+Graph AroundMiddle(const std::function<std::string(OnnxBuilder&, const std::string&)>& middle) {
+  OnnxBuilder n(12);
+  const std::string x = n.ConvSilu(n.Input("images", {1, 3, -1, -1}), 3, 16, 3, 2);
+  const std::string y = n.ConvSilu(middle(n, n.ConvSilu(x, 16, 16, 3)), 16, 32, 3);
+  n.NameOutput(n.Conv(y, 32, 8, 1), "out");
+  StatusOr<Graph> graph = n.Parse();
+  EXPECT_TRUE(graph.ok()) << graph.message();
+  return *graph;
+}
+
+void ExpectInt8Agrees(const Graph& graph, int int8_convolutions) {
+  const CompileOptions options{64, 96, NetworkPrecision::kInt8};
+  const Graph calibrated = Calibrated(graph, options);
+  EXPECT_LT(ErrorAgainstInterpreter(calibrated, options), 0.06f);
+  EXPECT_EQ(Compile(calibrated, options)->num_int8_convolutions(), int8_convolutions);
+}
+
+TEST(CompiledNetworkInt8, PlainConvolutions) {
+  ExpectInt8Agrees(AroundMiddle([](OnnxBuilder&, const std::string& x) { return x; }), 2);
+}
+
+TEST(CompiledNetworkInt8, OneByOneConvolution) {
+  ExpectInt8Agrees(AroundMiddle([](OnnxBuilder& n, const std::string& x) { return n.ConvSilu(x, 16, 16, 1); }), 3);
+}
+
+TEST(CompiledNetworkInt8, ShortcutBehindTheActivation) {
+  ExpectInt8Agrees(AroundMiddle([](OnnxBuilder& n, const std::string& x) {
+    return n.Node("Add", {x, n.ConvSilu(x, 16, 16, 3)});
+  }), 3);
+}
+
+TEST(CompiledNetworkInt8, AdditionBeforeTheActivation) {
+  ExpectInt8Agrees(AroundMiddle([](OnnxBuilder& n, const std::string& x) {
+    return n.Silu(n.BatchNorm(n.Node("Add", {n.Conv(x, 16, 16, 3), x}), 16));
+  }), 3);
+}
+
+TEST(CompiledNetworkInt8, PoolsUpsamplingAndConcatenation) {
+  ExpectInt8Agrees(AroundMiddle([](OnnxBuilder& n, const std::string& x) {
+    const auto [a, b] = n.Halves(x);
+    return n.ConvSilu(n.Concat({n.Upsample2(n.MaxPool(b, 5)), n.Upsample2(a)}), 16, 16, 1);
+  }), 3);
+}
+
+TEST(CompiledNetworkInt8, DepthwiseConvolution) {
+  ExpectInt8Agrees(AroundMiddle([](OnnxBuilder& n, const std::string& x) {
+    return n.Silu(n.Conv(n.Silu(n.Conv(x, 16, 16, 5, 1, 16)), 16, 16, 1));
+  }), 4);
+}
+
+TEST(CompiledNetworkInt8, WholeDetector) {
+  if (!HasFastInt8()) GTEST_SKIP() << "without VNNI sums of two products saturate";
+  TestNetworkOptions options;
+  options.msf = true;
+  const CompileOptions compile{64, 96, NetworkPrecision::kInt8};
+  EXPECT_LT(ErrorAgainstInterpreter(Calibrated(Parse(options), compile), compile), 0.3f);  // random weights forgive nothing
+}
+
+TEST(CompiledNetworkInt8, NeedsCalibration) {
+  const auto network = CompiledNetwork::Compile(Parse({}), {64, 96, NetworkPrecision::kInt8});
+  ASSERT_FALSE(network.ok());
+  EXPECT_NE(network.message().find("detector quantize"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace msf

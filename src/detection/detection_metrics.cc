@@ -21,49 +21,37 @@ double Threshold(size_t i) { return 0.5 + 0.05 * static_cast<double>(i); }
 struct Verdict {
   float score = 0;
   std::array<bool, kNumThresholds> right{};
-  bool ignored = false;
 };
 
-struct Pair {
-  double iou;
-  size_t truth;
-  size_t found;
-};
-
-// Matches detections and objects of one class in one image at one threshold, largest overlap first.
-void Match(const std::vector<Pair>& pairs, size_t level, std::vector<Verdict>& verdicts) {
-  std::vector<bool> truth_used, found_used(verdicts.size(), false);
-  for (const Pair& pair : pairs) {
-    if (pair.iou < Threshold(level)) break;
-    if (truth_used.size() <= pair.truth) truth_used.resize(pair.truth + 1, false);
-    if (truth_used[pair.truth] || found_used[pair.found]) continue;
-    truth_used[pair.truth] = found_used[pair.found] = true;
-    verdicts[pair.found].right[level] = true;
-  }
-}
-
-// Verdicts on the detections of one class in one image.
+// Verdicts on the detections of one class in one image. Every detection stands for the object that it overlaps most; of those that
+// stand for the same object well enough the strongest is right.
 void Judge(const ScoredImage& image, int class_id, std::vector<Verdict>& all) {
-  std::vector<Verdict> verdicts;
-  std::vector<Pair> pairs;
+  std::vector<const Detection*> ranked;
   for (const Detection& found : image.found) {
-    if (found.class_id != class_id) continue;
-    verdicts.push_back({found.score, {}, false});
+    if (found.class_id == class_id) ranked.push_back(&found);
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const auto* a, const auto* b) { return a->score > b->score; });
+  std::vector<std::array<bool, kNumThresholds>> taken(image.truth.size());
+  for (const Detection* found : ranked) {
+    Verdict verdict{found->score, {}};
+    bool ignored = false;
+    double best = 0;
+    size_t object = 0;
     for (size_t t = 0; t < image.truth.size(); ++t) {
       if (image.truth[t].class_id != class_id) continue;
-      const double iou = IntersectionOverUnion(image.truth[t].box, found.box);
-      if (iou < Threshold(0)) continue;
+      const double iou = IntersectionOverUnion(image.truth[t].box, found->box);
       if (image.truth[t].ignored) {
-        verdicts.back().ignored = true;
-      } else {
-        pairs.push_back({iou, t, verdicts.size() - 1});
+        ignored = ignored || iou >= Threshold(0);
+      } else if (iou > best) {
+        best = iou;
+        object = t;
       }
     }
-  }
-  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.iou > b.iou; });
-  for (size_t level = 0; level < kNumThresholds; ++level) Match(pairs, level, verdicts);
-  for (const Verdict& verdict : verdicts) {
-    if (!verdict.ignored || verdict.right[0]) all.push_back(verdict);
+    for (size_t level = 0; level < kNumThresholds && best >= Threshold(level); ++level) {
+      verdict.right[level] = !taken[object][level];
+      taken[object][level] = true;
+    }
+    if (!ignored || verdict.right[0]) all.push_back(verdict);
   }
 }
 

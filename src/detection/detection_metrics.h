@@ -48,7 +48,8 @@ struct DetectionMetrics {
   int num_classes = 0;  // of them
 };
 
-// Within an image and class, pairs with the highest IoU are matched first. Average precision: area under the precision envelope, sampled at
+// Within an image and class a detection stands for the object it overlaps most, and of those that stand for one object the strongest is
+// right. Average precision: area under the precision envelope, sampled at
 // 101 recalls (COCO). Precision and recall: at the one confidence of a grid of 1000 that maximises the mean F1 score (moving
 // average over a tenth of the grid). `min_objects` is at least 1.
 DetectionMetrics ComputeMetrics(const std::vector<ScoredImage>& images, int num_classes, int min_objects);

@@ -66,13 +66,6 @@ class PostOps {
     operands_.emplace_back(ops_.len() - 1, operand);
   }
 
-  void Add(const memory& addend, const Storage& storage) {
-    if (storage.format != NumberFormat::kUint8) return Binary(dnnl::algorithm::binary_add, addend);
-    Linear(1 / storage.scale, static_cast<float>(-storage.zero_point));
-    Binary(dnnl::algorithm::binary_add, addend);
-    Linear(storage.scale, 0);
-  }
-
   const dnnl::post_ops& Finish() {
     Flush();
     return ops_;
@@ -164,11 +157,11 @@ class ConvolutionStep : public Step {
     if (e.addend != kNoValue) {
       addend = memory(ImageDesc(spec_.output_shape, spec_.addend.format), CpuEngine(), buffers.addend);
     }
-    if (addend && e.add_first) ops.Add(addend, spec_.addend);
+    if (addend && e.add_first) ops.Binary(dnnl::algorithm::binary_add, addend);
     if (!e.scale.empty()) ops.Binary(dnnl::algorithm::binary_mul, ChannelVector(e.scale));
     if (!e.shift.empty()) ops.Binary(dnnl::algorithm::binary_add, ChannelVector(e.shift));
     ops.Activate(e);
-    if (addend && !e.add_first) ops.Add(addend, spec_.addend);
+    if (addend && !e.add_first) ops.Binary(dnnl::algorithm::binary_add, addend);
     if (spec_.output.format == NumberFormat::kUint8) {
       ops.Linear(1 / spec_.output.scale, static_cast<float>(spec_.output.zero_point));
     }

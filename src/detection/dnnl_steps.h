@@ -12,7 +12,7 @@
 namespace msf {
 
 // A convolution with its epilogue. `compute` is the format of the multiplications: kUint8 means 8-bit inputs with 8-bit
-// weights that have one scale per output channel; the input must then be stored as kUint8, else in `compute` itself.
+// weights that have one scale per output channel; the input must then be stored as kUint8, else in `compute` itself. The addend is never kUint8.
 struct ConvolutionSpec {
   Shape input_shape;
   Shape output_shape;

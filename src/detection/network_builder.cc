@@ -137,8 +137,11 @@ void NetworkBuilder::AddConvolution(const Node& node, NumberFormat compute) {
   const BufferId in = Read(node.inputs[0], spec.input);
   BufferId addend = -1;
   if (const ValueId id = node.epilogue.addend; id != kNoValue) {
+    // Not 8 bits: oneDNN 2.6 adds those wrongly.
     spec.addend = storage(id);
-    if (!int8 && spec.addend.format == NumberFormat::kUint8) spec.addend = {compute, true};
+    if (spec.addend.format == NumberFormat::kUint8) {
+      spec.addend = {HasFastBfloat16() ? NumberFormat::kBfloat16 : NumberFormat::kFloat32};
+    }
     spec.addend.channels_last = true;
     addend = Read(id, spec.addend);
   }

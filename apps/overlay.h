@@ -1,0 +1,17 @@
+// Pictures of what a detector found.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "detection/detection.h"
+
+namespace msf {
+
+// A colour copy of the image with every box, its class and score.
+cv::Mat DrawDetections(const cv::Mat& image, const std::vector<Detection>& detections,
+                       const std::vector<std::string>& class_names);
+
+}  // namespace msf
