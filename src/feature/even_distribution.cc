@@ -22,13 +22,6 @@ bool Stronger(const Corner& a, const Corner& b) {
   return a.y != b.y ? a.y < b.y : a.x < b.x;
 }
 
-// The `count` strongest, in unspecified but reproducible order.
-void KeepStrongest(int count, std::vector<Corner>& corners) {
-  if (static_cast<int>(corners.size()) <= count) return;
-  std::nth_element(corners.begin(), corners.begin() + count, corners.end(), Stronger);
-  corners.resize(count);
-}
-
 class Quadtree {
  public:
   Quadtree(const cv::Rect& area, int count, std::vector<Corner>& corners)
@@ -139,15 +132,27 @@ class Quadtree {
 std::vector<Corner> DistributeEvenly(const cv::Rect& area, int count, double even_share,
                                      std::vector<Corner>& corners) {
   if (count <= 0 || corners.empty()) return {};
-  const int num_even = std::clamp(static_cast<int>(std::lround(even_share * count)), 1, count);
+  const auto keep_strongest = [&](int number, std::vector<int>& indices) {
+    if (static_cast<int>(indices.size()) <= number) return;
+    std::nth_element(indices.begin(), indices.begin() + number, indices.end(),
+                     [&](int a, int b) { return Stronger(corners[a], corners[b]); });
+    indices.resize(number);
+  };
+  const int num_even = static_cast<int>(std::lround(even_share * count));
+  std::vector<int> chosen = Quadtree(area, num_even, corners).Select();
+  keep_strongest(num_even, chosen);  // the first cells may be more than the points wanted
   std::vector<bool> taken(corners.size(), false);
-  for (const int i : Quadtree(area, num_even, corners).Select()) taken[i] = true;
-  std::vector<Corner> chosen, rest;
-  for (size_t i = 0; i < corners.size(); ++i) (taken[i] ? chosen : rest).push_back(corners[i]);
-  KeepStrongest(count, chosen);  // the first cells may be more than the points wanted
-  KeepStrongest(count - static_cast<int>(chosen.size()), rest);
+  for (const int i : chosen) taken[i] = true;
+  std::vector<int> rest;
+  for (int i = 0; i < static_cast<int>(corners.size()); ++i) {
+    if (!taken[i]) rest.push_back(i);
+  }
+  keep_strongest(count - static_cast<int>(chosen.size()), rest);
   chosen.insert(chosen.end(), rest.begin(), rest.end());
-  return chosen;
+  std::vector<Corner> result;
+  result.reserve(chosen.size());
+  for (const int i : chosen) result.push_back(corners[i]);
+  return result;
 }
 
 }  // namespace msf
