@@ -120,6 +120,8 @@ StatusOr<std::string> SimplifyOnnx(const std::string& bytes, int height, int wid
     const int sizes[] = {1, 3, height, width};
     for (int i = 0; i < 4; ++i) shape.mutable_dim(i)->set_dim_value(sizes[i]);
   }
+  // OpenCV insists on a shape of the outputs, though not on its sizes.
+  for (auto& output : *graph.mutable_output()) output.mutable_type()->mutable_tensor_type()->mutable_shape();
   return model->SerializeAsString();
 }
 

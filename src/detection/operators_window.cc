@@ -90,7 +90,7 @@ Status ComputeConv(const ComputeContext& c) {
   StatusOr<Window> window = ConvWindow(c.node, x.shape, w.shape);
   if (!window.ok()) return window.status();
   const int64_t per_group = w.shape[0] / c.node.Int("group", 1);
-  const bool biased = c.node.inputs.size() > 2 && c.Has(2);
+  const bool biased = c.inputs.size() - (adds ? 1 : 0) > 2 && c.Has(2);
   size_t to = 0;
   for (int64_t n = 0; n < y.shape[0]; ++n) {
     for (int64_t out = 0; out < y.shape[1]; ++out) {

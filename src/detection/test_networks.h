@@ -115,7 +115,7 @@ class TestNetwork {
     std::vector<std::string> flat;
     for (const Scale& s : scales) {
       const int64_t c3 = std::max<int64_t>(o_.base * 4, std::min<int64_t>(o_.classes, 100));
-      const int64_t c2 = std::max<int64_t>(16, s.channels / 4);
+      const int64_t c2 = o_.base * 4;
       const std::string box = n_.Conv(n_.ConvSilu(n_.ConvSilu(s.map, s.channels, c2, 3), c2, c2, 3), c2, 64, 1);
       const std::string cls = n_.Conv(n_.ConvSilu(n_.ConvSilu(s.map, s.channels, c3, 3), c3, c3, 3), c3, o_.classes, 1);
       if (!o_.single_output) {
