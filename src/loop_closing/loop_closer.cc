@@ -19,6 +19,7 @@ LoopClosingSummary LoopCloser::Process(KeyFrameId id) {
   if (options_.enabled) {
     const StageTimer timer(summary.timings_ms, "detect");
     place = detector_.Detect(id, map_, database_);
+    summary.attempts = detector_.attempts();
   }
   {
     // After detection: a keyframe is no candidate for itself.

@@ -11,7 +11,8 @@ namespace msf {
 
 // What one keyframe brought.
 struct LoopClosingSummary {
-  std::optional<PlaceKind> found;  // a loop that was closed, or a merge that was made
+  std::optional<PlaceKind> found;      // a loop that was closed, or a merge that was made
+  std::vector<PlaceAttempt> attempts;  // the candidates that were compared
   KeyFrameId current, matched;
   int inliers = 0;  // matches between the two that agree on one pose
   Rigid3d T_c_m;    // matched camera to current camera

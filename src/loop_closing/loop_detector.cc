@@ -39,6 +39,7 @@ void AddSupport(std::vector<PlaceMatch> more, Recognition& place) {
 
 std::optional<Recognition> LoopDetector::Detect(KeyFrameId id, const SharedMap& shared_map,
                                                 const KeyFrameDatabase& database) {
+  attempts_.clear();
   std::optional<PlaceWindow> current;
   {
     const SharedMap::Reader map = shared_map.Read();
@@ -62,7 +63,7 @@ std::optional<Recognition> LoopDetector::Detect(KeyFrameId id, const SharedMap& 
 std::optional<Recognition> LoopDetector::Look(PlaceKind kind, const PlaceWindow& current,
                                               const SharedMap& shared_map,
                                               const KeyFrameDatabase& database,
-                                              std::optional<Hypothesis>& hypothesis) const {
+                                              std::optional<Hypothesis>& hypothesis) {
   if (hypothesis && !FollowUp(current, shared_map, *hypothesis)) hypothesis.reset();
   if (!hypothesis) {
     const std::vector<KeyFrameId> candidates =
@@ -96,7 +97,7 @@ std::vector<KeyFrameId> LoopDetector::Candidates(PlaceKind kind, const PlaceWind
 
 std::optional<LoopDetector::Hypothesis> LoopDetector::Suppose(
     PlaceKind kind, const std::vector<KeyFrameId>& candidates, const PlaceWindow& current,
-    const SharedMap& shared_map) const {
+    const SharedMap& shared_map) {
   const VerificationContext context(*shared_map.Read());
   const PlaceVerifier verifier(context.camera, context.levels, options_.verification, options_.pose,
                                noise_);
@@ -107,18 +108,23 @@ std::optional<LoopDetector::Hypothesis> LoopDetector::Suppose(
     if (!matched) continue;
     const uint64_t seed = seed_ + 1000003 * static_cast<uint64_t>(current.centre().id.value()) +
                           static_cast<uint64_t>(candidate.value());
-    PlaceMatch match = verifier.Verify(current, *matched, seed);
+    Recognition place{kind, verifier.Verify(current, *matched, seed), {}};
+    PlaceMatch& match = place.match;
+    if (match.accepted()) {
+      place.supporting = verifier.AgreeingNeighbours(match, current, *matched);
+      if (kind == PlaceKind::kLoop && !IsPlausible(match, *shared_map.Read()))
+        match.verdict = PlaceVerdict::kTooMuchDrift;
+    }
+    Note(place);
     if (!match.accepted()) continue;
-    if (best && match.matches.size() <= best->place.match.matches.size()) continue;
-    if (kind == PlaceKind::kLoop && !IsPlausible(match, *shared_map.Read())) continue;
-    std::vector<PlaceMatch> neighbours = verifier.AgreeingNeighbours(match, current, *matched);
-    best = Hypothesis{{kind, std::move(match), std::move(neighbours)}};
+    if (!best || match.matches.size() > best->place.match.matches.size())
+      best = Hypothesis{std::move(place)};
   }
   return best;
 }
 
 bool LoopDetector::FollowUp(const PlaceWindow& current, const SharedMap& shared_map,
-                            Hypothesis& hypothesis) const {
+                            Hypothesis& hypothesis) {
   Recognition& place = hypothesis.place;
   const KeyFrameId former = place.match.current;
   std::optional<PlaceWindow> matched;
@@ -136,12 +142,22 @@ bool LoopDetector::FollowUp(const PlaceWindow& current, const SharedMap& shared_
                                noise_);
   PlaceMatch match =
       verifier.VerifyFrom(T_c_former * place.match.T_c_m, current.centre(), *matched);
-  if (!match.accepted()) return ++hypothesis.missed <= options_.verification.max_missed_keyframes;
+  if (!match.accepted()) {
+    Note({place.kind, std::move(match), {}});
+    return ++hypothesis.missed <= options_.verification.max_missed_keyframes;
+  }
   hypothesis.missed = 0;
   std::swap(place.match, match);
   AddSupport({std::move(match)}, place);
   AddSupport(verifier.AgreeingNeighbours(place.match, current, *matched), place);
+  Note(place);
   return true;
+}
+
+void LoopDetector::Note(const Recognition& place) {
+  attempts_.push_back({place.kind, place.match.matched, place.match.verdict,
+                       static_cast<int>(place.match.matches.size()),
+                       static_cast<int>(place.supporting.size())});
 }
 
 // RGB-D odometry drifts by a few percent: a loop that says otherwise joins two places that only

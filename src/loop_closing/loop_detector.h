@@ -22,6 +22,9 @@ class LoopDetector {
   std::optional<Recognition> Detect(KeyFrameId id, const SharedMap& map,
                                     const KeyFrameDatabase& database);
 
+  // The candidates that the last Detect() compared, accepted or not.
+  const std::vector<PlaceAttempt>& attempts() const { return attempts_; }
+
  private:
   // A place that still lacks agreement.
   struct Hypothesis {
@@ -30,14 +33,16 @@ class LoopDetector {
   };
   std::optional<Recognition> Look(PlaceKind kind, const PlaceWindow& current, const SharedMap& map,
                                   const KeyFrameDatabase& database,
-                                  std::optional<Hypothesis>& hypothesis) const;
+                                  std::optional<Hypothesis>& hypothesis);
   std::vector<KeyFrameId> Candidates(PlaceKind kind, const PlaceWindow& current, const Map& map,
                                      const KeyFrameDatabase& database) const;
   // The candidate that the current keyframe matches best.
   std::optional<Hypothesis> Suppose(PlaceKind kind, const std::vector<KeyFrameId>& candidates,
-                                    const PlaceWindow& current, const SharedMap& map) const;
+                                    const PlaceWindow& current, const SharedMap& map);
   // Asks the current keyframe about a place that former ones have found; false: give it up.
-  bool FollowUp(const PlaceWindow& current, const SharedMap& map, Hypothesis& hypothesis) const;
+  bool FollowUp(const PlaceWindow& current, const SharedMap& map, Hypothesis& hypothesis);
+  // Notes the outcome for attempts().
+  void Note(const Recognition& place);
   bool IsPlausible(const PlaceMatch& match, const Map& map) const;
 
   const LoopClosingOptions options_;
@@ -45,6 +50,7 @@ class LoopDetector {
   const uint64_t seed_;
   std::optional<Hypothesis> loop_, merge_;
   KeyFrameId last_loop_;
+  std::vector<PlaceAttempt> attempts_;
 };
 
 }  // namespace msf

@@ -11,7 +11,7 @@ namespace msf {
 namespace {
 
 // A depth this many sigmas off its prediction is another surface's.
-constexpr double kMaxDepthSigmas = 3;
+constexpr double kMaxDepthSigmas = 5;
 
 std::vector<uint8_t> FlagPoints(const KeyFrameView& view) {
   std::vector<uint8_t> has_point(view.points.size());
@@ -40,6 +40,8 @@ const char* ToString(PlaceVerdict verdict) {
       return "few matches by tight projection";
     case PlaceVerdict::kTooLittleSeen:
       return "too little of what should be visible is seen";
+    case PlaceVerdict::kTooMuchDrift:
+      return "more drift than believable";
   }
   return "unknown";
 }

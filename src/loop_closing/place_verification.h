@@ -22,6 +22,7 @@ enum class PlaceVerdict {
   kDepthDisagrees,    // points lie in the right direction at wrong distances
   kFewTightMatches,   // too few agree with the refined pose
   kTooLittleSeen,     // too many of the points that should be visible are not
+  kTooMuchDrift,      // no camera path can have drifted so far
 };
 
 const char* ToString(PlaceVerdict verdict);

@@ -16,4 +16,13 @@ struct Recognition {
   std::vector<PlaceMatch> supporting;  // other keyframes that agree, with the same matched one
 };
 
+// What became of one candidate.
+struct PlaceAttempt {
+  PlaceKind kind = PlaceKind::kLoop;
+  KeyFrameId matched;
+  PlaceVerdict verdict = PlaceVerdict::kAccepted;
+  int num_matches = 0;
+  int num_supporting = 0;  // other keyframes that agree so far
+};
+
 }  // namespace msf
