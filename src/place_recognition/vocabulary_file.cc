@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <cstring>
@@ -31,23 +32,60 @@ struct Header {
 };
 static_assert(sizeof(Header) == 48);
 
-// The parts after the header as offsets into 64-bit units.
-struct Layout {
-  size_t first_child, weights, end;
-  explicit Layout(size_t nodes)
-      : first_child(4 * nodes),
-        weights(first_child + (nodes + 1 + 1) / 2),
-        end(weights + (nodes + 1) / 2) {}
+// The bytes that fill a part of the file up to 8.
+size_t Padding(size_t num_bytes) { return (8 - num_bytes % 8) % 8; }
+
+template <typename T>
+size_t NumBytes(const std::vector<T>& part) {
+  return part.size() * sizeof(T);
+}
+
+// Over the filled-up parts, one after the other: FNV-1a by 64-bit units, with a shift that lets
+// high bits reach low ones.
+class Checksum {
+ public:
+  template <typename T>
+  void Add(const std::vector<T>& part) {
+    const char* bytes = reinterpret_cast<const char*>(part.data());
+    for (size_t at = 0; at < NumBytes(part); at += 8) {
+      uint64_t unit = 0;
+      std::memcpy(&unit, bytes + at, std::min<size_t>(8, NumBytes(part) - at));
+      value_ = (value_ ^ unit) * 0x100000001b3u;
+      value_ ^= value_ >> 29;
+    }
+  }
+  uint64_t value() const { return value_; }
+
+ private:
+  uint64_t value_ = 0xcbf29ce484222325u;
 };
 
-// FNV-1a over 64-bit units, with a shift that lets high bits reach low ones.
-uint64_t Checksum(const std::vector<uint64_t>& units) {
-  uint64_t hash = 0xcbf29ce484222325u;
-  for (const uint64_t unit : units) {
-    hash = (hash ^ unit) * 0x100000001b3u;
-    hash ^= hash >> 29;
-  }
-  return hash;
+uint64_t ChecksumOf(const VocabularyTree& tree) {
+  Checksum checksum;
+  checksum.Add(tree.centres);
+  checksum.Add(tree.first_child);
+  checksum.Add(tree.weights);
+  return checksum.value();
+}
+
+template <typename T>
+void ReadPart(std::istream& stream, size_t size, std::vector<T>& part) {
+  part.resize(size);
+  stream.read(reinterpret_cast<char*>(part.data()), static_cast<std::streamsize>(NumBytes(part)));
+  stream.ignore(static_cast<std::streamsize>(Padding(NumBytes(part))));
+}
+
+template <typename T>
+void WritePart(std::ostream& stream, const std::vector<T>& part) {
+  stream.write(reinterpret_cast<const char*>(part.data()),
+               static_cast<std::streamsize>(NumBytes(part)));
+  stream.write("\0\0\0\0\0\0\0", static_cast<std::streamsize>(Padding(NumBytes(part))));
+}
+
+uint64_t ExpectedFileSize(uint64_t num_nodes) {
+  const uint64_t indices = (num_nodes + 1) * sizeof(uint32_t), weights = num_nodes * sizeof(float);
+  return sizeof(Header) + num_nodes * sizeof(Descriptor) + indices + Padding(indices) + weights +
+         Padding(weights);
 }
 
 Status CheckHeader(const Header& header, const std::string& name) {
@@ -80,59 +118,41 @@ StatusOr<VocabularyTree> ReadVocabularyFile(const std::filesystem::path& file) {
   Header header{};
   stream.read(reinterpret_cast<char*>(&header), sizeof(header));
   MSF_RETURN_IF_ERROR(CheckHeader(header, file.string()));
-  const Layout layout(header.num_nodes);
-  const uint64_t expected_size = sizeof(Header) + layout.end * sizeof(uint64_t);
+  const uint64_t expected_size = ExpectedFileSize(header.num_nodes);
   if (!stream || file_size != expected_size) {
     return Status::Error(
         fmt::format("{}: has {} bytes where {} are expected; it was cut off or is damaged",
                     file.string(), file_size, expected_size));
   }
-  std::vector<uint64_t> units(layout.end);
-  stream.read(reinterpret_cast<char*>(units.data()),
-              static_cast<std::streamsize>(units.size() * sizeof(uint64_t)));
-  if (!stream || Checksum(units) != header.checksum) {
+  VocabularyTree tree;
+  tree.branching = header.branching;
+  tree.levels = header.levels;
+  ReadPart(stream, header.num_nodes, tree.centres);
+  ReadPart(stream, header.num_nodes + 1, tree.first_child);
+  ReadPart(stream, header.num_nodes, tree.weights);
+  if (!stream || ChecksumOf(tree) != header.checksum) {
     return Status::Error(file.string() +
                          ": is damaged: the checksum does not agree; get a fresh copy");
   }
-
-  VocabularyTree tree{.branching = header.branching,
-                      .levels = header.levels,
-                      .centres = {},
-                      .first_child = {},
-                      .weights = {}};
-  tree.centres.resize(header.num_nodes);
-  tree.first_child.resize(header.num_nodes + 1);
-  tree.weights.resize(header.num_nodes);
-  std::memcpy(tree.centres.data(), units.data(), tree.centres.size() * sizeof(Descriptor));
-  std::memcpy(tree.first_child.data(), units.data() + layout.first_child,
-              tree.first_child.size() * sizeof(uint32_t));
-  std::memcpy(tree.weights.data(), units.data() + layout.weights,
-              tree.weights.size() * sizeof(float));
   const Status status = tree.Check();
   if (!status.ok()) return Status::Error(file.string() + ": is damaged: " + status.message());
   return tree;
 }
 
 Status WriteVocabularyFile(const VocabularyTree& tree, const std::filesystem::path& file) {
-  const Layout layout(tree.centres.size());
-  std::vector<uint64_t> units(layout.end, 0);
-  std::memcpy(units.data(), tree.centres.data(), tree.centres.size() * sizeof(Descriptor));
-  std::memcpy(units.data() + layout.first_child, tree.first_child.data(),
-              tree.first_child.size() * sizeof(uint32_t));
-  std::memcpy(units.data() + layout.weights, tree.weights.data(),
-              tree.weights.size() * sizeof(float));
   Header header{.magic = {},
                 .version = kVersion,
                 .branching = tree.branching,
                 .levels = tree.levels,
                 .num_nodes = static_cast<uint32_t>(tree.num_nodes()),
-                .checksum = Checksum(units),
+                .checksum = ChecksumOf(tree),
                 .reserved = {}};
   std::memcpy(header.magic, kMagic.data(), kMagic.size());
   return WriteFileAtomically(file, [&](std::ostream& stream) {
     stream.write(reinterpret_cast<const char*>(&header), sizeof(header));
-    stream.write(reinterpret_cast<const char*>(units.data()),
-                 static_cast<std::streamsize>(units.size() * sizeof(uint64_t)));
+    WritePart(stream, tree.centres);
+    WritePart(stream, tree.first_child);
+    WritePart(stream, tree.weights);
   });
 }
 
