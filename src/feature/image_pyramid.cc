@@ -5,12 +5,10 @@
 
 namespace msf {
 
-void ToGrey(const cv::Mat& color, cv::Mat& grey) {
-  if (color.channels() == 1) {
-    grey = color;
-  } else {
-    cv::cvtColor(color, grey, cv::COLOR_BGR2GRAY);
-  }
+cv::Mat ToGrey(const cv::Mat& color, cv::Mat& converted) {
+  if (color.channels() == 1) return color;
+  cv::cvtColor(color, converted, cv::COLOR_BGR2GRAY);
+  return converted;
 }
 
 void BuildPyramid(const cv::Mat& grey, const ScaleLevels& scales, std::vector<cv::Mat>& levels) {

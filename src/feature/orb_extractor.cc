@@ -1,11 +1,10 @@
-#include "feature/orb_extractor.h"
-
 #include <cmath>
 
 #include "feature/brief_pattern.h"
 #include "feature/even_distribution.h"
 #include "feature/fast_corners.h"
 #include "feature/image_pyramid.h"
+#include "feature/orb_extractor.h"
 #include "feature/point_depth.h"
 #include "feature/score_peak.h"
 #include "feature/smoothing.h"
@@ -53,8 +52,8 @@ Status OrbOptions::Check() const {
 
 struct OrbExtractor::Buffers {
   std::vector<cv::Mat> pyramid;
-  cv::Mat grey;
-  cv::Mat scores;
+  cv::Mat converted;  // from colour to grey
+  cv::Mat scores;     // of the first level's size; each level uses a part
   cv::Mat smoothed;
   std::vector<Corner> corners;
 };
@@ -76,9 +75,9 @@ FrameFeatures OrbExtractor::Extract(const RgbdFrame& frame) {
 FrameFeatures OrbExtractor::Extract(const RgbdFrame& frame, int num_features) {
   const Status status = CheckFrame(frame);
   MSF_CHECK(status.ok(), status.message());
-  ToGrey(frame.color, buffers_->grey);
-  BuildPyramid(buffers_->grey, levels_, buffers_->pyramid);
-  buffers_->scores.create(buffers_->grey.size(), CV_8UC1);
+  BuildPyramid(ToGrey(frame.color, buffers_->converted), levels_, buffers_->pyramid);
+  buffers_->scores.create(frame.color.size(), CV_8UC1);
+  buffers_->smoothed.create(frame.color.size(), CV_8UC1);
   FrameFeatures features;
   const std::vector<int> quotas = LevelQuotas(levels_, num_features);
   for (int level = 0; level < static_cast<int>(buffers_->pyramid.size()); ++level) {
@@ -94,17 +93,17 @@ void OrbExtractor::ExtractLevel(int level, int quota, FrameFeatures& features) {
   if (area.width < 1 || area.height < 1) return;
   std::vector<Corner>& corners = buffers_->corners;
   cv::Mat scores = buffers_->scores(cv::Rect({0, 0}, image.size()));
+  cv::Mat smoothed = buffers_->smoothed(cv::Rect({0, 0}, image.size()));
   // Two pixels more: the peak search looks at neighbours, its refinement at theirs.
-  SmoothForCorners(image, buffers_->smoothed);
-  ComputeFastScores(buffers_->smoothed, {area.x - 2, area.y - 2, area.width + 4, area.height + 4},
-                    scores);
+  SmoothForCorners(image, smoothed);
+  ComputeFastScores(smoothed, {area.x - 2, area.y - 2, area.width + 4, area.height + 4}, scores);
   corners.clear();
   FindScorePeaks(scores, area, options_.min_fast_threshold, corners);
   KeepStrongPerCell(area, options_.cell_size_px, options_.fast_threshold, corners);
   const std::vector<Corner> chosen = DistributeEvenly(area, quota, options_.even_share, corners);
   if (chosen.empty()) return;
 
-  SmoothForDescriptors(image, buffers_->smoothed);
+  SmoothForDescriptors(image, smoothed);
   const cv::Mat& first = buffers_->pyramid[0];
   const Eigen::Vector2f scale(static_cast<float>(first.cols) / image.cols,
                               static_cast<float>(first.rows) / image.rows);
@@ -118,8 +117,7 @@ void OrbExtractor::ExtractLevel(int level, int quota, FrameFeatures& features) {
     features.image_px.push_back(centre.cwiseProduct(scale) - Eigen::Vector2f(0.5f, 0.5f));
     features.angle_rad.push_back(angle_rad);
     features.level.push_back(static_cast<uint8_t>(level));
-    features.descriptors.push_back(
-        DescribePatch(buffers_->smoothed, corner.x, corner.y, offset, angle_rad));
+    features.descriptors.push_back(DescribePatch(smoothed, corner.x, corner.y, offset, angle_rad));
   }
 }
 

@@ -220,6 +220,15 @@ TEST(OrbExtractor, ColourAndGreyAgreeAndRepeatThemselves) {
   EXPECT_EQ(first.angle_rad, second.angle_rad);
 }
 
+TEST(OrbExtractor, LeavesTheFramesAsTheyAre) {
+  OrbExtractor extractor({});
+  const RgbdFrame grey = FrameOf(Texture().clone());
+  extractor.Extract(grey);
+  cv::Mat colour(Texture().size(), CV_8UC3, cv::Scalar(1, 2, 3));
+  extractor.Extract(FrameOf(colour));  // must not land in the pixels of the frame before
+  EXPECT_EQ(cv::norm(grey.color, Texture(), cv::NORM_INF), 0);
+}
+
 TEST(OrbExtractor, DescriptorsStandBrightnessAndContrast) {
   cv::Mat dimmed;
   Texture().convertTo(dimmed, CV_8U, 0.6, 30);
