@@ -136,21 +136,4 @@ LabeledImage MakeTrainingPicture(const std::vector<LabeledImage>& images, size_t
   return picture;
 }
 
-cv::Rect LetterboxContent(cv::Size image, int side) {
-  const double scale = static_cast<double>(side) / std::max(image.width, image.height);
-  const int width = static_cast<int>(std::lround(image.width * scale));
-  const int height = static_cast<int>(std::lround(image.height * scale));
-  return {(side - width) / 2, (side - height) / 2, width, height};
-}
-
-LabeledImage LetterboxPicture(const LabeledImage& image, int side) {
-  const double scale = static_cast<double>(side) / std::max(image.pixels.cols, image.pixels.rows);
-  const cv::Rect content = LetterboxContent(image.pixels.size(), side);
-  LabeledImage picture{cv::Mat(side, side, CV_8UC3, kGrey), {}};
-  cv::resize(image.pixels, picture.pixels(content), content.size(), 0, 0, cv::INTER_LINEAR);
-  const cv::Matx23d map(scale, 0, content.x, 0, scale, content.y);
-  picture.objects = TransformObjects(image.objects, map, {side, side}, 0.0);
-  return picture;
-}
-
 }  // namespace msf

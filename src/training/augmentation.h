@@ -19,19 +19,19 @@ struct LabeledImage {
 };
 
 struct AugmentationOptions {
-  double mosaic = 0.5;
-  double rotate_upright = 0.45;
-  double rotate_quarter = 0.2;
+  double mosaic = 0.2;
+  double rotate_upright = 0.6;
+  double rotate_quarter = 0.15;
   double rotate_degrees = 45.0;
-  double scale = 0.5;
+  double scale = 0.35;
   double translate = 0.1;
-  double border_crop = 0.25;
+  double border_crop = 0.2;
   double flip = 0.5;
   double hue = 0.015;
   double saturation = 0.7;
   double value = 0.4;
   double blur = 0.15;
-  double min_visible = 0.2;
+  double min_visible = 0.3;
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
@@ -58,12 +58,6 @@ using Random = std::mt19937_64;
 // The same generator state gives the same picture.
 LabeledImage MakeTrainingPicture(const std::vector<LabeledImage>& images, size_t index, int side,
                                  const AugmentationOptions& options, Random& random);
-
-// Where an image of this size ends up when it is fitted into a square of `side` pixels.
-cv::Rect LetterboxContent(cv::Size image, int side);
-
-// `image` scaled to fit into a square of `side` pixels and centred in it on grey; boxes follow. Nothing random.
-LabeledImage LetterboxPicture(const LabeledImage& image, int side);
 
 // `objects` under the affine map (2x3, old pixels to new ones): the box around the mapped corners, cut to `size`. Objects that keep less
 // than `min_visible` of the mapped box, or less than 2 pixels of a side, are dropped.

@@ -1,7 +1,9 @@
 #include "training/batch.h"
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
+#include <map>
+#include <set>
 
 #include <opencv2/imgcodecs.hpp>
 #include <torch/types.h>
@@ -35,28 +37,43 @@ StatusOr<std::vector<LabeledImage>> DecodeImages(const std::vector<VocImage>& se
   return images;
 }
 
-EpochSampler::EpochSampler(const std::vector<LabeledImage>& images, const AugmentationOptions& options, int side, int batch,
-                           uint64_t seed, int epoch)
-    : images_(images), options_(options), side_(side), batch_(batch), order_(images.size()) {
+std::vector<double> BalancingWeights(const std::vector<LabeledImage>& images, double balance) {
+  constexpr double kCommon = 0.15, kMost = 4.0;
+  std::map<int, double> share;
+  for (const LabeledImage& image : images) {
+    std::set<int> labels;
+    for (const VocObject& object : image.objects) labels.insert(object.label);
+    for (int label : labels) share[label] += 1.0 / static_cast<double>(images.size());
+  }
+  std::vector<double> weights;
+  for (const LabeledImage& image : images) {
+    double weight = 1.0;
+    for (const VocObject& object : image.objects) weight = std::max(weight, std::pow(kCommon / share[object.label], balance));
+    weights.push_back(std::min(weight, kMost));
+  }
+  return weights;
+}
+
+EpochSampler::EpochSampler(const std::vector<LabeledImage>& images, const SamplingOptions& options, uint64_t seed, int epoch)
+    : images_(images), options_(options), order_(images.size()) {
   std::seed_seq mix{seed, static_cast<uint64_t>(epoch)};
   Random random(mix);
   seed_ = random();
-  std::iota(order_.begin(), order_.end(), size_t{0});
-  for (size_t i = order_.size(); i > 1; --i) std::swap(order_[i - 1], order_[random() % i]);
+  const std::vector<double> weights = BalancingWeights(images, options.balance);
+  std::discrete_distribution<size_t> draw(weights.begin(), weights.end());
+  for (size_t& index : order_) index = draw(random);
 }
 
-int EpochSampler::num_batches() const {
-  return std::max<int>(1, static_cast<int>(order_.size()) / batch_);
-}
+int EpochSampler::num_batches() const { return std::max(1, static_cast<int>(order_.size()) / options_.batch); }
 
 Batch EpochSampler::Make(int index) const {
   std::vector<LabeledImage> pictures;
   std::vector<std::vector<VocObject>> objects;
-  for (int i = 0; i < batch_; ++i) {
-    const size_t place = static_cast<size_t>(index) * batch_ + i;
+  for (int i = 0; i < options_.batch; ++i) {
+    const size_t place = static_cast<size_t>(index) * options_.batch + i;
     std::seed_seq mix{seed_ >> 32, seed_ & 0xFFFFFFFFU, static_cast<uint64_t>(place)};
     Random random(mix);
-    pictures.push_back(MakeTrainingPicture(images_, order_[place % order_.size()], side_, options_, random));
+    pictures.push_back(MakeTrainingPicture(images_, order_[place % order_.size()], options_.side, options_.augmentation, random));
     objects.push_back(pictures.back().objects);
   }
   return {ImagesToTensor(pictures), PadLabels(objects)};

@@ -19,6 +19,15 @@ torch::Tensor RelativeError(const torch::Tensor& given, const torch::Tensor& wan
   return ((given.to(torch::kFloat) - target).square() / spread).mean();
 }
 
+// The same for class logits, weighted by the teacher's scores: almost all cells are background, the few others are what matters.
+torch::Tensor ScoreWeightedError(const torch::Tensor& given, const torch::Tensor& wanted) {
+  constexpr double kBackgroundWeight = 0.02;
+  const torch::Tensor target = wanted.to(torch::kFloat);
+  const torch::Tensor weight = target.sigmoid() + kBackgroundWeight;
+  const torch::Tensor error = (given.to(torch::kFloat) - target).square() * weight;
+  return error.sum() / (weight.sum() * (target.var() + 1e-3));
+}
+
 // A value of the student's node `index`, if it is the output of a layer, is the teacher's output of that layer.
 int TeacherNode(const ModelGraph& student, const ModelGraph& teacher, int index) {
   if (index == 0) return 0;
@@ -79,11 +88,7 @@ torch::Tensor LayerDistillation::LayerError(int layer, std::vector<torch::Tensor
   }
   if (own.layers[layer].type == "Detect") {
     student_.RunNodes(nodes.begin, nodes.end, values);
-    torch::Tensor sum = torch::zeros({});
-    for (size_t i = 0; i < own.class_heads.size(); ++i) {
-      sum = sum + RelativeError(values[own.class_heads[i]], teacher_values[other.class_heads[i]]);
-    }
-    return sum / static_cast<double>(own.class_heads.size());
+    return ClassDistance(student_.HeadsOf(values), teacher_.HeadsOf(teacher_values));
   }
   const torch::Tensor& wanted = teacher_values[other.LayerOutput(layer)];
   torch::Tensor& input = values[own.nodes[nodes.begin].inputs[0]];
@@ -123,15 +128,10 @@ std::vector<double> LayerDistillation::Errors(const torch::Tensor& images, bool 
   return errors;
 }
 
-torch::Tensor FeatureDistance(const Network& student, const std::vector<torch::Tensor>& values, const Network& teacher,
-                              const std::vector<torch::Tensor>& teacher_values, const std::vector<int>& layers) {
+torch::Tensor ClassDistance(const HeadOutputs& student, const HeadOutputs& teacher) {
   torch::Tensor sum = torch::zeros({});
-  for (int layer : layers) {
-    const torch::Tensor target = teacher_values[teacher.graph().LayerOutput(layer)].to(torch::kFloat);
-    const torch::Tensor given = values[student.graph().LayerOutput(layer)].to(torch::kFloat);
-    sum = sum + (given - target).square().mean() / (target.square().mean() + 1e-6);
-  }
-  return sum / static_cast<double>(layers.size());
+  for (size_t i = 0; i < student.classes.size(); ++i) sum = sum + ScoreWeightedError(student.classes[i], teacher.classes[i]);
+  return sum / static_cast<double>(student.classes.size());
 }
 
 }  // namespace msf

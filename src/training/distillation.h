@@ -35,9 +35,8 @@ class LayerDistillation {
   std::vector<int> layers_;
 };
 
-// Distance of the features a student hands from stage to stage to those of its teacher: mean over `layers` of the squared error over the
-// teacher's mean square.
-torch::Tensor FeatureDistance(const Network& student, const std::vector<torch::Tensor>& values, const Network& teacher,
-                              const std::vector<torch::Tensor>& teacher_values, const std::vector<int>& layers);
+// Distance of a student's class logits to its teacher's: squared error over variance, weighted by the teacher's scores, mean over the
+// scales. Keeps what the teacher knows of classes that the training images hardly show.
+torch::Tensor ClassDistance(const HeadOutputs& student, const HeadOutputs& teacher);
 
 }  // namespace msf

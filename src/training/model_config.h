@@ -16,7 +16,7 @@ struct ModelConfig {
   double msf_width = 0.5;                         // branch width over output width
   std::vector<int> msf_kernels = {3, 5};          // kernels of the depthwise branches beside the standard 3x3 one
   int msf_standard_kernel = 3;                    // kernel of the standard branch
-  std::string neck = "pan";                       // pan (YOLOv8), fpn, hrnet
+  std::string neck = "pan";                       // pan (YOLOv8), fpn (a feature pyramid after it), hrnet
   int class_width = 0;                            // hidden width of the class branch; 0: max(64, min(classes, 100))
   std::vector<std::string> classes;
 

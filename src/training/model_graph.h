@@ -67,6 +67,8 @@ class GraphBuilder {
   // Starts a row of the layer table; the nodes until the next call belong to it.
   void BeginLayer(std::string type);
   void EndLayer();
+  // Name of the layer begun last, the prefix of its tensors: "model.4".
+  std::string LayerName() const { return "model." + std::to_string(graph_.layers.size() - 1); }
 
   int Input();
   // Convolution + batch norm + SiLU.

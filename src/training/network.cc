@@ -5,6 +5,7 @@
 #include <torch/types.h>
 #include <torch/utils.h>
 
+#include "training/fast_silu.h"
 #include "util/check.h"
 
 namespace msf {
@@ -76,11 +77,11 @@ torch::Tensor Network::RunNode(const GraphNode& node, const std::vector<torch::T
   switch (node.op) {
     case GraphOp::kConv: {
       const torch::Tensor y = RunConv(node, x);
-      return node.activated ? at::silu(y) : y;
+      return node.activated ? FastSilu(y) : y;
     }
     case GraphOp::kNorm: {
       const torch::Tensor y = RunNorm(NormPrefix(node), x);
-      return node.activated ? at::silu(y) : y;
+      return node.activated ? FastSilu(y) : y;
     }
     case GraphOp::kMaxPool:
       return at::max_pool2d(x, node.kernel, node.stride, node.kernel / 2);

@@ -41,6 +41,10 @@ Optimizer::Optimizer(const NamedTensors& parameters, const OptimizerOptions& opt
   }
 }
 
+void Optimizer::ScaleRate(const std::set<std::string>& names, double factor) {
+  for (const std::string& name : names) rate_scale_[name] = factor;
+}
+
 double Optimizer::ClipFactor() const {
   double squares = 0.0;
   for (const auto& [name, parameter] : parameters_) {
@@ -57,10 +61,12 @@ void Optimizer::Step(double learning_rate) {
     torch::Tensor& gradient = parameter.mutable_grad();
     if (!gradient.defined()) continue;
     if (clip < 1.0) gradient.mul_(clip);
+    const auto scale = rate_scale_.find(name);
+    const double rate = scale == rate_scale_.end() ? learning_rate : learning_rate * scale->second;
     if (options_.method == "adamw") {
-      StepAdamW(name, parameter, gradient, learning_rate);
+      StepAdamW(name, parameter, gradient, rate);
     } else {
-      StepSgd(name, parameter, gradient, learning_rate);
+      StepSgd(name, parameter, gradient, rate);
     }
     gradient.reset();
   }

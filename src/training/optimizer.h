@@ -2,6 +2,7 @@
 // that a checkpoint holds all of it.
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 
@@ -11,12 +12,12 @@ namespace msf {
 
 struct OptimizerOptions {
   std::string method = "adamw";
-  double learning_rate = 2e-4;
+  double learning_rate = 5e-5;
   double final_fraction = 0.02;
   std::string decay = "cosine";
   double momentum = 0.9;
   double weight_decay = 0.01;
-  double warmup_epochs = 0.5;
+  double warmup_epochs = 0.3;
   double clip_norm = 10.0;
 
   template <typename Visitor>
@@ -25,7 +26,7 @@ struct OptimizerOptions {
     visit("learning_rate", learning_rate, "largest learning rate");
     visit("final_fraction", final_fraction, "learning rate at the end, as a part of the largest");
     visit("decay", decay, "cosine or linear");
-    visit("momentum", momentum, "momentum of SGD, first moment's decay of AdamW");
+    visit("momentum", momentum, "momentum of SGD, decay of AdamW's first moment");
     visit("weight_decay", weight_decay, "weight decay of convolution weights (not of norms and biases)");
     visit("warmup_epochs", warmup_epochs, "epochs in which the learning rate rises from 0");
     visit("clip_norm", clip_norm, "largest norm of the gradient");
@@ -41,6 +42,9 @@ class Optimizer {
   // Trains the `parameters` listed in `trained`; all of them where that is empty.
   Optimizer(const NamedTensors& parameters, const OptimizerOptions& options, const std::set<std::string>& trained = {});
 
+  // The named parameters learn `factor` times as fast as the others.
+  void ScaleRate(const std::set<std::string>& names, double factor);
+
   // One step along the gradients (clipped), which are then cleared.
   void Step(double learning_rate);
 
@@ -54,6 +58,7 @@ class Optimizer {
 
   OptimizerOptions options_;
   NamedTensors parameters_;
+  std::map<std::string, double> rate_scale_;
   NamedTensors first_;   // momentum
   NamedTensors second_;  // AdamW: mean squares
   int64_t steps_ = 0;

@@ -12,15 +12,13 @@
 #include "training/distillation.h"
 #include "training/head_decoding.h"
 #include "training/mixed_precision.h"
+#include "training/msf_initialization.h"
 #include "training/validation.h"
 #include "training/weight_adaptation.h"
 
 namespace msf {
 
 namespace {
-
-// Layers whose outputs travel on to the heads: the outputs of backbone stages and neck.
-const std::vector<int> kImitatedLayers = {4, 6, 9, 15, 18, 21};
 
 ModelConfig TeacherConfig(const std::vector<std::string>& classes, int class_width) {
   ModelConfig config;
@@ -50,6 +48,7 @@ Status TrainOptions::Check() const {
   if (distill_epochs < 0 || validation_images < 0 || patience < 0 || threads < 1) {
     return Status::Error("train.distill_epochs, validation_images and patience must not be negative, threads at least 1");
   }
+  if (freeze_layers < 0) return Status::Error("train.freeze_layers must not be negative");
   MSF_RETURN_IF_ERROR(optimizer.Check());
   return augmentation.Check();
 }
@@ -86,19 +85,25 @@ Status Trainer::Initialize(const NamedTensors& weights) {
   return Status::Ok();
 }
 
+void Trainer::InitializeBlocks() {
+  constexpr int kBatches = 8;
+  const std::vector<GraphLayer>& layers = network_.graph().layers;
+  if (std::none_of(layers.begin(), layers.end(), [](const GraphLayer& layer) { return layer.type == "MSFConv"; })) return;
+  const EpochSampler sampler = Sampler(-1000, options_.augmentation.mosaic);
+  std::vector<torch::Tensor> pictures;
+  for (int i = 0; i < std::min(kBatches, sampler.num_batches()); ++i) pictures.push_back(sampler.Make(i).images);
+  const std::vector<double> errors = InitializeMsfLayers(network_, *teacher_, torch::cat(pictures));
+  for (size_t i = 0; i < errors.size(); ++i) {
+    on_progress_({"initialize", 0, 1, static_cast<int>(i), static_cast<int>(errors.size()), errors[i]});
+  }
+}
+
 void Trainer::Distill() {
   if (!teacher_ || new_tensors_.empty() || options_.distill_epochs == 0) return;
+  InitializeBlocks();
   const LayerDistillation distillation(network_, *teacher_, new_tensors_);
   if (distillation.layers().empty()) return;
-  // Norms beside new convolutions were taken over but must adapt with them: whole blocks learn, not single tensors.
-  std::set<std::string> trained;
-  for (const std::string& name : new_tensors_) {
-    if (network_.parameters().contains(name)) trained.insert(name);
-    const size_t conv = name.rfind(".conv.weight");
-    if (conv == std::string::npos) continue;
-    trained.insert(name.substr(0, conv) + ".bn.weight");
-    trained.insert(name.substr(0, conv) + ".bn.bias");
-  }
+  const std::set<std::string> trained = NewParameters();
   OptimizerOptions rates;
   rates.learning_rate = options_.distill_rate;
   rates.weight_decay = 0.0;
@@ -107,8 +112,7 @@ void Trainer::Distill() {
   network_.set_training(true);
   for (int epoch = 0; epoch < options_.distill_epochs; ++epoch) {
     // Negative epochs, so that training sees other pictures.
-    const EpochSampler sampler(images_, options_.augmentation, options_.side, options_.batch,
-                               static_cast<uint64_t>(options_.seed), -1 - epoch);
+    const EpochSampler sampler = Sampler(-1 - epoch, options_.augmentation.mosaic);
     for (int step = 0; step < sampler.num_batches(); ++step) {
       const torch::Tensor loss = distillation.Loss(sampler.Make(step).images, options_.bfloat16);
       loss.backward();
@@ -120,6 +124,19 @@ void Trainer::Distill() {
   for (const auto& [name, tensor] : network_.parameters()) tensor.requires_grad_(true);
 }
 
+std::set<std::string> Trainer::NewParameters() const {
+  std::set<std::string> trained;
+  for (const std::string& name : new_tensors_) {
+    if (network_.parameters().contains(name)) trained.insert(name);
+    // Norms beside new convolutions were taken over but must adapt with them.
+    const size_t conv = name.rfind(".conv.weight");
+    if (conv == std::string::npos) continue;
+    trained.insert(name.substr(0, conv) + ".bn.weight");
+    trained.insert(name.substr(0, conv) + ".bn.bias");
+  }
+  return trained;
+}
+
 std::set<std::string> Trainer::TrainedParameters() const {
   std::set<std::string> trained;
   for (const auto& [name, tensor] : network_.parameters()) {
@@ -129,34 +146,42 @@ std::set<std::string> Trainer::TrainedParameters() const {
   return trained;
 }
 
-double Trainer::TrainStep(const Batch& batch, double epoch, EpochRecord& record) {
+EpochSampler Trainer::Sampler(int epoch, double mosaic) const {
+  SamplingOptions sampling{options_.side, options_.batch, options_.balance, options_.augmentation};
+  sampling.augmentation.mosaic = mosaic;
+  return {images_, sampling, static_cast<uint64_t>(options_.seed), epoch};
+}
+
+HeadOutputs Trainer::ForwardForTraining(const torch::Tensor& images, torch::Tensor& distance) {
+  const MixedPrecision mixed(options_.bfloat16);
+  const int frozen = options_.freeze_layers > 0 ? network_.graph().layers[options_.freeze_layers - 1].end : 1;
   std::vector<torch::Tensor> values(network_.graph().nodes.size());
-  const double imitation =
-      teacher_ && options_.imitation_epochs > 0.0 ? options_.imitation * std::max(0.0, 1.0 - epoch / options_.imitation_epochs) : 0.0;
-  torch::Tensor distance = torch::zeros({});
+  values[0] = images.contiguous(torch::MemoryFormat::ChannelsLast);
   {
-    const MixedPrecision mixed(options_.bfloat16);
-    values[0] = batch.images.contiguous(torch::MemoryFormat::ChannelsLast);
-    const int frozen = options_.freeze_layers > 0 ? network_.graph().layers[options_.freeze_layers - 1].end : 1;
-    {
-      const torch::NoGradGuard no_grad;
-      network_.RunNodes(1, frozen, values);
-    }
-    network_.RunNodes(frozen, static_cast<int>(values.size()), values);
-    if (imitation > 0.0) {
-      std::vector<torch::Tensor> wanted(teacher_->graph().nodes.size());
-      const int end = teacher_->graph().layers[kImitatedLayers.back()].end;
-      {
-        const torch::NoGradGuard no_grad;
-        wanted[0] = values[0];
-        teacher_->RunNodes(1, end, wanted);
-      }
-      distance = FeatureDistance(network_, values, *teacher_, wanted, kImitatedLayers);
-    }
+    const torch::NoGradGuard no_grad;
+    network_.set_training(false);
+    network_.RunNodes(1, frozen, values);
   }
-  const LossTerms terms = DetectionLoss(DecodeHeads(network_.HeadsOf(values), options_.side), batch.labels);
+  network_.set_training(!options_.freeze_norms);
+  network_.RunNodes(frozen, static_cast<int>(values.size()), values);
+  HeadOutputs heads = network_.HeadsOf(values);
+  distance = torch::zeros({});
+  if (teacher_ && options_.imitation > 0.0) {
+    const HeadOutputs wanted = [&] {
+      const torch::NoGradGuard no_grad;
+      return teacher_->Forward(images);
+    }();
+    distance = ClassDistance(heads, wanted);
+  }
+  return heads;
+}
+
+double Trainer::TrainStep(const Batch& batch, EpochRecord& record) {
+  torch::Tensor distance;
+  const HeadOutputs heads = ForwardForTraining(batch.images, distance);
+  const LossTerms terms = DetectionLoss(DecodeHeads(heads, options_.side), batch.labels);
   const auto images = static_cast<double>(options_.batch);
-  const torch::Tensor total = images * (terms.total + imitation * distance);
+  const torch::Tensor total = images * (terms.total + options_.imitation * distance);
   total.backward();
   record.box_loss += terms.box;
   record.class_loss += terms.classes;
@@ -166,16 +191,14 @@ double Trainer::TrainStep(const Batch& batch, double epoch, EpochRecord& record)
 }
 
 void Trainer::TrainEpoch(int epoch) {
-  AugmentationOptions augmentation = options_.augmentation;
-  if (epoch >= options_.epochs - options_.mosaic_off_epochs) augmentation.mosaic = 0.0;
-  const EpochSampler sampler(images_, augmentation, options_.side, options_.batch, static_cast<uint64_t>(options_.seed), epoch);
+  const bool last_epochs = epoch >= options_.epochs - options_.mosaic_off_epochs;
+  const EpochSampler sampler = Sampler(epoch, last_epochs ? 0.0 : options_.augmentation.mosaic);
   const int steps = sampler.num_batches();
   EpochRecord record;
   record.epoch = epoch + 1;
-  network_.set_training(!options_.freeze_norms);
   for (int step = 0; step < steps; ++step) {
     const double at = epoch + static_cast<double>(step) / steps;
-    const double loss = TrainStep(sampler.Make(step), at, record);
+    const double loss = TrainStep(sampler.Make(step), record);
     record.learning_rate = LearningRateAt(options_.optimizer, at + 1.0 / steps, options_.epochs);
     optimizer_->Step(record.learning_rate);
     average_->Update(network_);
@@ -191,9 +214,9 @@ void Trainer::ValidateEpoch(EpochRecord& record) {
   Network averaged(network_.graph(), 0);
   const Status loaded = averaged.Load(average_->state());
   MSF_CHECK(loaded.ok(), loaded.message());
-  const Precision precision = Validate(averaged, validation_, options_.side, 5, options_.bfloat16);
-  record.map50 = precision.map50;
-  record.map50_95 = precision.map50_95;
+  const DetectionMetrics metrics = Validate(averaged, validation_, options_.side, 5, options_.bfloat16);
+  record.map50 = metrics.map50;
+  record.map50_95 = metrics.map50_95;
 }
 
 bool Trainer::Stalled() const {
@@ -204,9 +227,14 @@ bool Trainer::Stalled() const {
 }
 
 Status Trainer::Run(const std::filesystem::path& directory) {
+  if (options_.freeze_layers > static_cast<int>(network_.graph().layers.size())) {
+    return Status::Error("train.freeze_layers exceeds the model's layers");
+  }
+  if (images_.empty()) return Status::Error("there are no images to train on");
   const std::filesystem::path checkpoint = directory / "checkpoint.pt";
   std::filesystem::create_directories(directory);
   optimizer_ = std::make_unique<Optimizer>(network_.parameters(), options_.optimizer, TrainedParameters());
+  optimizer_->ScaleRate(NewParameters(), options_.new_rate);
   if (std::filesystem::exists(checkpoint)) {
     average_ = std::make_unique<WeightAverage>(network_, options_.average_decay, options_.average_ramp);
     MSF_RETURN_IF_ERROR(LoadCheckpoint(checkpoint));

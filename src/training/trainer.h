@@ -17,19 +17,20 @@
 namespace msf {
 
 struct TrainOptions {
-  int epochs = 12;
-  int batch = 16;
+  int epochs = 4;
+  int batch = 8;
   int side = 320;
-  int mosaic_off_epochs = 2;
+  double balance = 0.5;
+  int mosaic_off_epochs = 1;
   bool bfloat16 = true;
   int64_t seed = 0;
   int threads = 1;
   bool freeze_norms = true;
   int freeze_layers = 3;
-  int distill_epochs = 2;
-  double distill_rate = 3e-3;
-  double imitation = 0.0;
-  double imitation_epochs = 0.0;
+  int distill_epochs = 1;
+  double distill_rate = 1e-3;
+  double new_rate = 1.0;
+  double imitation = 2.0;
   double average_decay = 0.998;
   double average_ramp = 200.0;
   int validation_images = 100;
@@ -42,6 +43,7 @@ struct TrainOptions {
     visit("epochs", epochs, "passes over the training images");
     visit("batch", batch, "images per step");
     visit("side", side, "training pictures are square with this many pixels a side (a multiple of 32)");
+    visit("balance", balance, "exponent by which images with rare classes are shown more often; 0: all alike");
     visit("mosaic_off_epochs", mosaic_off_epochs, "last epochs without mosaics");
     visit("bfloat16", bfloat16, "convolutions in bfloat16");
     visit("seed", seed, "decides starting weights of new parts, the order of images and all augmentation");
@@ -50,8 +52,8 @@ struct TrainOptions {
     visit("freeze_layers", freeze_layers, "first layers that keep their starting weights (after distillation)");
     visit("distill_epochs", distill_epochs, "passes in which new layers learn to reproduce the layers of the starting weights");
     visit("distill_rate", distill_rate, "largest learning rate (AdamW) of those passes");
-    visit("imitation", imitation, "weight of the distance to the features of the starting weights during training");
-    visit("imitation_epochs", imitation_epochs, "epochs over which that weight falls to 0");
+    visit("new_rate", new_rate, "new layers learn this many times as fast as those with starting weights");
+    visit("imitation", imitation, "weight of the distance to the class logits of the network that gave the starting weights");
     visit("average_decay", average_decay, "decay of the moving average of weights that is kept in the end");
     visit("average_ramp", average_ramp, "updates over which that decay rises");
     visit("validation_images", validation_images, "training images that are set aside for the curve");
@@ -105,11 +107,18 @@ class Trainer {
   const ModelGraph& graph() const { return network_.graph(); }
 
  private:
+  // Closed-form weights for MSFConv blocks, then layer-wise distillation of everything new.
+  void InitializeBlocks();
   void Distill();
   void TrainEpoch(int epoch);
+  EpochSampler Sampler(int epoch, double mosaic) const;
+  // Outputs for a batch, gradients recorded, and their distance to the teacher's (0 without one).
+  HeadOutputs ForwardForTraining(const torch::Tensor& images, torch::Tensor& distance);
   std::set<std::string> TrainedParameters() const;
+  // The blocks without starting weights: new convolutions with their norms.
+  std::set<std::string> NewParameters() const;
   // Loss of one batch after its gradients were added; fills the record's sums.
-  double TrainStep(const Batch& batch, double epoch, EpochRecord& record);
+  double TrainStep(const Batch& batch, EpochRecord& record);
   void ValidateEpoch(EpochRecord& record);
   bool Stalled() const;
 
