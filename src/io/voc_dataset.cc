@@ -36,7 +36,9 @@ StatusOr<VocObject> ParseObject(const pugi::xml_node& node, const VocImage& imag
   // One pixel of grace: rescaled annotations round, and some tools count from 0.
   const bool inside = object.x0 >= -1.0F && object.y0 >= -1.0F && object.x1 <= static_cast<float>(image.width) + 1.0F &&
                       object.y1 <= static_cast<float>(image.height) + 1.0F;
-  if (!box || !inside || !(object.x1 > object.x0) || !(object.y1 > object.y0)) {
+  const bool empty = !(std::min(object.x1, static_cast<float>(image.width)) > std::max(object.x0, 0.0F)) ||
+                     !(std::min(object.y1, static_cast<float>(image.height)) > std::max(object.y0, 0.0F));
+  if (!box || !inside || empty) {
     std::ostringstream sentence;
     sentence << origin << ": the box of '" << name << "' (" << object.x0 + 1 << ", " << object.y0 + 1 << ")-(" << object.x1 << ", "
              << object.y1 << ") is empty or outside the " << image.width << "x" << image.height << " image";
