@@ -1,10 +1,11 @@
+#include "feature/orb_extractor.h"
+
 #include <cmath>
 
 #include "feature/brief_pattern.h"
 #include "feature/even_distribution.h"
 #include "feature/fast_corners.h"
 #include "feature/image_pyramid.h"
-#include "feature/orb_extractor.h"
 #include "feature/point_depth.h"
 #include "feature/score_peak.h"
 #include "feature/smoothing.h"
@@ -17,7 +18,7 @@ namespace {
 constexpr int kBorderPx = kPatchRadiusPx + 4;
 
 // Depth, undistorted position and virtual stereo of points whose image position is known.
-void AddGeometry(const RgbdFrame& frame, FrameFeatures& features) {
+void AddGeometry(const RgbdFrame& frame, const Rigid3d& T_depth_color, FrameFeatures& features) {
   const Camera& camera = *frame.camera;
   const size_t size = features.image_px.size();
   features.uv_px.resize(size);
@@ -26,7 +27,10 @@ void AddGeometry(const RgbdFrame& frame, FrameFeatures& features) {
   features.static_weight.assign(size, 1.0f);
   for (size_t i = 0; i < size; ++i) {
     features.uv_px[i] = camera.Undistort(features.image_px[i].cast<double>()).cast<float>();
-    const float depth_m = PointDepth(frame.depth, features.image_px[i], camera.depth_factor);
+    const float depth_m =
+        frame.depth_delay_s == 0
+            ? PointDepth(frame.depth, features.image_px[i], camera.depth_factor)
+            : PointDepthFromElsewhere(frame.depth, features.uv_px[i], camera, T_depth_color);
     features.depth_m[i] = depth_m;
     features.u_right_px[i] =
         depth_m > 0 ? features.uv_px[i].x() - static_cast<float>(camera.bf) / depth_m : -1.0f;
@@ -68,11 +72,12 @@ OrbExtractor::OrbExtractor(const OrbOptions& options)
 
 OrbExtractor::~OrbExtractor() = default;
 
-FrameFeatures OrbExtractor::Extract(const RgbdFrame& frame) {
-  return Extract(frame, options_.num_features);
+FrameFeatures OrbExtractor::Extract(const RgbdFrame& frame, const Rigid3d& T_depth_color) {
+  return Extract(frame, options_.num_features, T_depth_color);
 }
 
-FrameFeatures OrbExtractor::Extract(const RgbdFrame& frame, int num_features) {
+FrameFeatures OrbExtractor::Extract(const RgbdFrame& frame, int num_features,
+                                    const Rigid3d& T_depth_color) {
   const Status status = CheckFrame(frame);
   MSF_CHECK(status.ok(), status.message());
   BuildPyramid(ToGrey(frame.color, buffers_->converted), levels_, buffers_->pyramid);
@@ -83,7 +88,7 @@ FrameFeatures OrbExtractor::Extract(const RgbdFrame& frame, int num_features) {
   for (int level = 0; level < static_cast<int>(buffers_->pyramid.size()); ++level) {
     ExtractLevel(level, quotas[level], features);
   }
-  AddGeometry(frame, features);
+  AddGeometry(frame, T_depth_color, features);
   return features;
 }
 

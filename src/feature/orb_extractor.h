@@ -6,6 +6,7 @@
 
 #include "feature/frame_features.h"
 #include "feature/scale_levels.h"
+#include "geometry/rigid3d.h"
 #include "sensor/rgbd_frame.h"
 #include "util/status.h"
 
@@ -18,7 +19,7 @@ struct OrbOptions {
   int fast_threshold = 20;
   int min_fast_threshold = 7;
   int cell_size_px = 35;
-  double even_share = 0.7;
+  double even_share = 1.0;
   bool subpixel = true;
 
   template <typename Visitor>
@@ -44,10 +45,12 @@ class OrbExtractor {
   ~OrbExtractor();
 
   // The points of a frame with undistorted positions, depth, virtual stereo, weight 1, and the grid
-  // built.
-  FrameFeatures Extract(const RgbdFrame& frame);
+  // built. `T_depth_color` takes coordinates of the camera when it took the colour image to those
+  // when it took the depth image (see RgbdFrame::depth_delay_s).
+  FrameFeatures Extract(const RgbdFrame& frame, const Rigid3d& T_depth_color = Rigid3d());
   // The same with `num_features` in place of the option (more where much of the image is masked).
-  FrameFeatures Extract(const RgbdFrame& frame, int num_features);
+  FrameFeatures Extract(const RgbdFrame& frame, int num_features,
+                        const Rigid3d& T_depth_color = Rigid3d());
 
   const ScaleLevels& levels() const { return levels_; }
 

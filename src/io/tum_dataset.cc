@@ -110,6 +110,7 @@ StatusOr<RgbdFramePtr> TumDataset::Load(size_t index) {
   auto frame = std::make_shared<RgbdFrame>();
   frame->id = FrameId(static_cast<int64_t>(index));
   frame->time_s = files.time_s;
+  frame->depth_delay_s = files.depth_time_s - files.time_s;
   frame->color = std::move(*color);
   frame->depth = std::move(*depth);
   frame->camera = camera_;

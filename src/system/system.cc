@@ -106,7 +106,8 @@ StatusOr<TrackingResult> System::Impl::Track(const RgbdFramePtr& frame) {
   std::shared_ptr<const FrameFeatures> features;
   {
     const StageTimer timer(timings_ms, "feature");
-    features = std::make_shared<const FrameFeatures>(extractor_.Extract(*frame));
+    features = std::make_shared<const FrameFeatures>(
+        extractor_.Extract(*frame, tracker_.PredictMotion(frame->depth_delay_s)));
   }
   TrackingResult result;
   {

@@ -1,5 +1,7 @@
 #include "tracking/tracker.h"
 
+#include <algorithm>
+
 #include "tracking/keyframe_creation.h"
 
 namespace msf {
@@ -7,6 +9,8 @@ namespace {
 
 // For so long after relocalisation tracking searches wider and asks for more inliers.
 constexpr double kFreshlyRelocalized_s = 1.0;
+
+constexpr int kMaxLocateAttempts = 3;
 
 }  // namespace
 
@@ -39,7 +43,7 @@ TrackingResult Tracker::Track(RgbdFramePtr image, std::shared_ptr<const FrameFea
   const bool has_map = state_ == TrackingState::kTracking || state_ == TrackingState::kRecentlyLost;
   bool tracked;
   if (has_map) {
-    tracked = FindPose(result) && RefineWithLocalMap(result);
+    tracked = Locate(result);
     if (tracked) InsertKeyFrameIfWanted(load, result);
   } else {
     tracked = StartMap(result);
@@ -49,8 +53,16 @@ TrackingResult Tracker::Track(RgbdFramePtr image, std::shared_ptr<const FrameFea
   return result;
 }
 
+Rigid3d Tracker::PredictMotion(double duration_s) const {
+  if (!velocity_) return {};
+  return Rigid3d::Exp(velocity_->Log() * (duration_s / velocity_interval_s_));
+}
+
 bool Tracker::StartMap(TrackingResult& result) {
+  const int with_depth = static_cast<int>(std::count_if(frame_.features->depth_m.begin(), frame_.features->depth_m.end(),
+                                                        [](float depth_m) { return depth_m > 0; }));
   if (frame_.features->size() < options_.tracking.min_initial_points) return false;
+  if (with_depth < options_.tracking.min_initial_depths) return false;
   SharedMap::Writer map = map_.Write();
   map->StartNewMap();
   BecomeKeyFrame(*map, result);
@@ -58,6 +70,18 @@ bool Tracker::StartMap(TrackingResult& result) {
   local_map_.Clear();
   result.num_inliers = frame_.NumPoints();
   return true;
+}
+
+// Another thread may correct the whole map in the middle of a frame, and places from before and after do not go together: then the
+// frame is located once more.
+bool Tracker::Locate(TrackingResult& result) {
+  for (int attempt = 1;; ++attempt) {
+    epoch_ = map_.Read()->epoch();
+    const bool located = FindPose(result) && RefineWithLocalMap(result);
+    if (attempt == kMaxLocateAttempts || map_.Read()->epoch() == epoch_) return located;
+    TakeMatches({});
+    matches_.clear();
+  }
 }
 
 bool Tracker::FindPose(TrackingResult& result) {
@@ -162,6 +186,8 @@ void Tracker::InsertKeyFrameIfWanted(const MappingLoad& load, TrackingResult& re
   SharedMap::Writer map = map_.Write();
   // The map may have been corrected since it was matched: the frame joins it where its reference keyframe is now.
   frame_.T_cw = frame_.T_c_reference * map->PoseOf(frame_.reference);
+  // Relocalisation may have found the camera in an older map.
+  map->SetActiveMap(map->MapOf(frame_.reference));
   BecomeKeyFrame(*map, result);
 }
 
@@ -190,10 +216,15 @@ void Tracker::UpdateState(bool tracked, TrackingResult& result) {
 
 void Tracker::RememberFrame(bool tracked, TrackingResult& result) {
   velocity_.reset();
-  const bool follows = tracked && last_frame_tracked_ && !result.started_map;
+  // Two poses from before and after a correction of the map say nothing about the camera's motion.
+  const bool same_epoch = map_.Read()->epoch() == epoch_;
+  const bool follows = tracked && last_frame_tracked_ && !result.started_map && same_epoch;
   last_frame_tracked_ = tracked;
   if (!tracked) return;
-  if (follows) velocity_ = frame_.T_cw * last_.T_cw.Inverse();
+  if (follows) {
+    velocity_ = frame_.T_cw * last_.T_cw.Inverse();
+    velocity_interval_s_ = frame_.image->time_s - last_.image->time_s;
+  }
   result.T_cw = frame_.T_cw;
   result.map_id = map_.Read()->MapOf(frame_.reference);
   result.reference = frame_.reference;

@@ -29,8 +29,14 @@ class Tracker {
   // Frames must come in the order of time. `load` says how busy the mapper is.
   TrackingResult Track(RgbdFramePtr image, std::shared_ptr<const FrameFeatures> features, const MappingLoad& load);
 
+  // How the camera will have moved `duration_s` from now if it goes on as it does: takes its coordinates of
+  // now to those of then. No motion while the velocity is not known.
+  Rigid3d PredictMotion(double duration_s) const;
+
  private:
   bool StartMap(TrackingResult& result);
+  // The frame's pose in the map.
+  bool Locate(TrackingResult& result);
   // A first pose from the motion model, else the reference keyframe, else relocalisation.
   bool FindPose(TrackingResult& result);
   bool FollowMotion();
@@ -61,7 +67,9 @@ class Tracker {
   Frame last_;   // the last one that had a pose
   std::vector<PointMatch> matches_;
   std::optional<Rigid3d> velocity_;  // T_cl: last camera to present camera, from one frame to the next
+  double velocity_interval_s_ = 0;   // the time between these two
   LocalMap local_map_;
+  uint64_t epoch_ = 0;  // of the map that the frame was located in
   bool last_frame_tracked_ = false;
   double last_keyframe_time_s_ = 0;
   double last_tracked_time_s_ = 0;

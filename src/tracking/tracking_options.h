@@ -9,7 +9,7 @@ namespace msf {
 
 struct KeyFramePolicyOptions {
   double max_interval_s = 1.0;
-  double reference_ratio = 0.75;
+  double reference_ratio = 0.85;
   double urgent_ratio = 0.25;
   int min_inliers = 15;
   int min_tracked_close = 100;
@@ -30,6 +30,7 @@ struct KeyFramePolicyOptions {
 
 struct TrackingOptions {
   int min_initial_points = 500;
+  int min_initial_depths = 100;
   double close_depth_baselines = 40;
   double motion_radius_px = 15;
   int min_motion_matches = 20;
@@ -54,6 +55,7 @@ struct TrackingOptions {
   template <typename Visitor>
   void Visit(Visitor& visit) {
     visit("min_initial_points", min_initial_points, "features that the first frame of a map needs");
+    visit("min_initial_depths", min_initial_depths, "of these, features with depth");
     visit("close_depth_baselines", close_depth_baselines, "depths below this many virtual baselines are close (reliable)");
     visit("motion_radius_px", motion_radius_px, "search radius around the predicted place at level 0, px");
     visit("min_motion_matches", min_motion_matches, "with fewer matches the radius is doubled, then given up");
