@@ -136,36 +136,36 @@ void ExpectInt8Agrees(const Graph& graph, int int8_convolutions) {
 }
 
 TEST(CompiledNetworkInt8, PlainConvolutions) {
-  ExpectInt8Agrees(AroundMiddle([](OnnxBuilder&, const std::string& x) { return x; }), 2);
+  ExpectInt8Agrees(AroundMiddle([](OnnxBuilder&, const std::string& x) { return x; }), 3);
 }
 
 TEST(CompiledNetworkInt8, OneByOneConvolution) {
-  ExpectInt8Agrees(AroundMiddle([](OnnxBuilder& n, const std::string& x) { return n.ConvSilu(x, 16, 16, 1); }), 3);
+  ExpectInt8Agrees(AroundMiddle([](OnnxBuilder& n, const std::string& x) { return n.ConvSilu(x, 16, 16, 1); }), 4);
 }
 
 TEST(CompiledNetworkInt8, ShortcutBehindTheActivation) {
   ExpectInt8Agrees(AroundMiddle([](OnnxBuilder& n, const std::string& x) {
     return n.Node("Add", {x, n.ConvSilu(x, 16, 16, 3)});
-  }), 3);
+  }), 4);
 }
 
 TEST(CompiledNetworkInt8, AdditionBeforeTheActivation) {
   ExpectInt8Agrees(AroundMiddle([](OnnxBuilder& n, const std::string& x) {
     return n.Silu(n.BatchNorm(n.Node("Add", {n.Conv(x, 16, 16, 3), x}), 16));
-  }), 3);
+  }), 4);
 }
 
 TEST(CompiledNetworkInt8, PoolsUpsamplingAndConcatenation) {
   ExpectInt8Agrees(AroundMiddle([](OnnxBuilder& n, const std::string& x) {
     const auto [a, b] = n.Halves(x);
     return n.ConvSilu(n.Concat({n.Upsample2(n.MaxPool(b, 5)), n.Upsample2(a)}), 16, 16, 1);
-  }), 3);
+  }), 4);
 }
 
 TEST(CompiledNetworkInt8, DepthwiseConvolution) {
   ExpectInt8Agrees(AroundMiddle([](OnnxBuilder& n, const std::string& x) {
     return n.Silu(n.Conv(n.Silu(n.Conv(x, 16, 16, 5, 1, 16)), 16, 16, 1));
-  }), 4);
+  }), 5);
 }
 
 TEST(CompiledNetworkInt8, WholeDetector) {

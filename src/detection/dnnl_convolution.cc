@@ -4,6 +4,7 @@
 
 #include <dnnl.hpp>
 
+#include "detection/column_folding.h"
 #include "detection/dnnl_steps.h"
 #include "detection/dnnl_types.h"
 #include "util/check.h"
@@ -122,6 +123,7 @@ class ConvolutionStep : public Step {
     for (const auto& [index, operand] : post_ops.operands()) {
       arguments_[DNNL_ARG_ATTR_MULTIPLE_POST_OP(index) | DNNL_ARG_SRC_1] = operand;
     }
+    spec_.weights = spec_.bias = nullptr;  // oneDNN holds its own copies now
   }
 
   Status Run() override {
@@ -213,7 +215,10 @@ class ConvolutionStep : public Step {
 }  // namespace
 
 std::unique_ptr<Step> MakeConvolutionStep(const ConvolutionSpec& spec, const StepMemory& memory) {
-  return std::make_unique<ConvolutionStep>(spec, memory);
+  const int factor = FoldingFactor(spec);
+  if (factor == 1) return std::make_unique<ConvolutionStep>(spec, memory);
+  Tensor weights, bias;  // the step keeps copies of its own
+  return std::make_unique<ConvolutionStep>(FoldColumns(spec, factor, weights, bias), memory);
 }
 
 bool CanWrite(NumberFormat compute, NumberFormat output) {

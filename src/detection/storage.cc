@@ -10,6 +10,12 @@
 namespace msf {
 namespace {
 
+// Here rather than in FloatToBfloat16() so that loops over it become vector code.
+inline uint16_t RoundToBfloat16(float x) {
+  const uint32_t bits = std::bit_cast<uint32_t>(x);
+  return static_cast<uint16_t>((bits + 0x7fffu + ((bits >> 16) & 1u)) >> 16);
+}
+
 struct FloatCodec {
   using Stored = float;
   float Load(float x) const { return x; }
@@ -19,7 +25,7 @@ struct FloatCodec {
 struct Bfloat16Codec {
   using Stored = uint16_t;
   float Load(uint16_t x) const { return std::bit_cast<float>(static_cast<uint32_t>(x) << 16); }
-  uint16_t Store(float x) const { return FloatToBfloat16(x); }
+  uint16_t Store(float x) const { return RoundToBfloat16(x); }
 };
 
 struct Uint8Codec {
@@ -90,10 +96,7 @@ size_t NumBytes(const Shape& shape, const Storage& storage) {
   return static_cast<size_t>(NumElements(shape)) * BytesPerElement(storage.format);
 }
 
-uint16_t FloatToBfloat16(float x) {
-  const uint32_t bits = std::bit_cast<uint32_t>(x);
-  return static_cast<uint16_t>((bits + 0x7fffu + ((bits >> 16) & 1u)) >> 16);
-}
+uint16_t FloatToBfloat16(float x) { return RoundToBfloat16(x); }
 
 void Convert(const Shape& shape, const void* from, const Storage& from_storage, void* to,
              const Storage& to_storage) {

@@ -116,7 +116,7 @@ class Planner {
   bool ToleratesInt8(size_t index) const {
     const Node& node = graph_.nodes[index];
     if (precision_ != NetworkPrecision::kInt8 || plan_.kinds[index] != NodeKind::kConvolution) return false;
-    return node.inputs[0] != graph_.inputs[0] && !IsHead(node);
+    return !IsHead(node);
   }
 
   // Yields numbers that no later layer can mend: logits, or what attention compares.
