@@ -143,5 +143,24 @@ TEST(PointDepth, ReadsTheNearestPixel) {
   }
 }
 
+TEST(PointDepth, IsLookedUpWhereTheCameraWasWhenItTookTheDepth) {
+  // A wall 2 m before the camera that took the depth image, far left 3 m; the colour camera is 0.4
+  // m behind and turned.
+  const Camera camera{.fx = 500, .fy = 500, .cx = 319.5, .cy = 239.5};
+  cv::Mat depth(480, 640, CV_16UC1, cv::Scalar(10000));
+  const Rigid3d straight(Eigen::Quaterniond::Identity(), {0, 0, -0.4});
+  EXPECT_NEAR(PointDepthFromElsewhere(depth, {319.5f, 239.5f}, camera, straight), 2.4, 1e-4);
+  depth.colRange(0, 300).setTo(cv::Scalar(15000));
+  // Turned by 0.1 rad to the left the middle of the colour image shows what is 50 px left of the
+  // middle.
+  const Rigid3d turned(Eigen::Quaterniond(Eigen::AngleAxisd(-0.1, Eigen::Vector3d::UnitY())),
+                       {0, 0, 0});
+  EXPECT_NEAR(PointDepthFromElsewhere(depth, {319.5f, 239.5f}, camera, turned), 3 / std::cos(0.1),
+              1e-3);
+  EXPECT_NEAR(PointDepthFromElsewhere(depth, {319.5f, 239.5f}, camera, Rigid3d()), 2, 1e-4);
+  depth.setTo(cv::Scalar(0));
+  EXPECT_EQ(PointDepthFromElsewhere(depth, {319.5f, 239.5f}, camera, straight), 0);
+}
+
 }  // namespace
 }  // namespace msf
