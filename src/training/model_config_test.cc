@@ -1,5 +1,6 @@
 #include "training/model_config.h"
 
+#include <filesystem>
 #include <fstream>
 
 #include <gtest/gtest.h>

@@ -1,0 +1,128 @@
+#include "training/trainer.h"
+
+#include <fstream>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+namespace msf {
+namespace {
+
+struct Interruption : std::runtime_error {
+  Interruption() : std::runtime_error("interrupted") {}
+};
+
+ModelConfig TinyModel() {
+  ModelConfig config;
+  config.classes = {"square", "disc"};
+  return config;
+}
+
+TrainOptions TinyTraining() {
+  TrainOptions options;
+  options.epochs = 3;
+  options.batch = 2;
+  options.side = 64;
+  options.validation_images = 2;
+  options.freeze_layers = 0;
+  options.freeze_norms = false;
+  options.optimizer.learning_rate = 1e-3;
+  return options;
+}
+
+std::vector<LabeledImage> TinyImages() {
+  std::vector<LabeledImage> images;
+  for (int i = 0; i < 6; ++i) {
+    LabeledImage image{cv::Mat(64, 64, CV_8UC3, cv::Scalar(40 * i, 90, 60)), {}};
+    const cv::Rect box(8 + 2 * i, 10, 24, 24);
+    if (i % 2 == 0) {
+      cv::rectangle(image.pixels, box, cv::Scalar(255, 255, 255), cv::FILLED);
+    } else {
+      cv::circle(image.pixels, {box.x + 12, box.y + 12}, 12, cv::Scalar(20, 20, 250), cv::FILLED);
+    }
+    image.objects.push_back({i % 2, static_cast<float>(box.x), 10, static_cast<float>(box.x + 24), 34, false});
+    images.push_back(std::move(image));
+  }
+  return images;
+}
+
+Trainer MakeTrainer(const TrainOptions& options, int interrupt_in_epoch) {
+  return Trainer(TinyModel(), options, TinyImages(), [interrupt_in_epoch](const TrainProgress& progress) {
+    if (progress.epoch == interrupt_in_epoch) throw Interruption();
+  });
+}
+
+std::filesystem::path FreshFolder(const std::string& name) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / name;
+  std::filesystem::remove_all(folder);
+  return folder;
+}
+
+TEST(TrainerTest, ResumedTrainingGivesTheSameWeights) {
+  const std::filesystem::path whole = FreshFolder("whole"), broken = FreshFolder("broken");
+  Trainer uninterrupted = MakeTrainer(TinyTraining(), -1);
+  ASSERT_TRUE(uninterrupted.Run(whole).ok());
+
+  Trainer interrupted = MakeTrainer(TinyTraining(), 1);
+  EXPECT_THROW((void)interrupted.Run(broken), Interruption);
+  Trainer resumed = MakeTrainer(TinyTraining(), -1);
+  const Status status = resumed.Run(broken);
+  ASSERT_TRUE(status.ok()) << status.message();
+
+  ASSERT_EQ(resumed.records().size(), 3U);
+  for (const auto& [name, tensor] : uninterrupted.weights()) {
+    ASSERT_TRUE(tensor.equal(resumed.weights().at(name))) << name;
+  }
+  EXPECT_TRUE(std::filesystem::exists(broken / "curves.svg"));
+  std::ifstream csv(broken / "curves.csv");
+  int lines = 0;
+  for (std::string line; std::getline(csv, line);) ++lines;
+  EXPECT_EQ(lines, 4);
+}
+
+TEST(TrainerTest, CheckpointOfAnotherTrainingIsRefused) {
+  const std::filesystem::path folder = FreshFolder("other");
+  TrainOptions options = TinyTraining();
+  options.epochs = 1;
+  ASSERT_TRUE(MakeTrainer(options, -1).Run(folder).ok());
+  options.seed = 9;
+  const Status status = MakeTrainer(options, -1).Run(folder);
+  ASSERT_FALSE(status.ok());
+  EXPECT_NE(status.message().find("other options"), std::string::npos) << status.message();
+}
+
+TEST(TrainerTest, TrainingLowersTheLoss) {
+  TrainOptions options = TinyTraining();
+  options.epochs = 8;
+  options.validation_images = 0;
+  Trainer trainer = MakeTrainer(options, -1);
+  ASSERT_TRUE(trainer.Run(FreshFolder("loss")).ok());
+  const auto total = [](const EpochRecord& r) { return 7.5 * r.box_loss + 0.5 * r.class_loss + 1.5 * r.distribution_loss; };
+  EXPECT_LT(total(trainer.records().back()), 0.8 * total(trainer.records().front()));
+}
+
+TEST(TrainOptionsTest, NonsenseIsRefused) {
+  TrainOptions options;
+  EXPECT_TRUE(options.Check().ok());
+  options.side = 100;
+  EXPECT_FALSE(options.Check().ok());
+}
+
+TEST(BatchTest, RareClassesAreShownMoreOften) {
+  std::vector<LabeledImage> images(20);
+  for (int i = 0; i < 20; ++i) images[i].objects.push_back({i == 0 ? 1 : 0, 0, 0, 1, 1, false});
+  const std::vector<double> weights = BalancingWeights(images, 0.5);
+  EXPECT_NEAR(weights[0], std::sqrt(0.15 / 0.05), 1e-9);
+  EXPECT_EQ(weights[1], 1.0);
+  EXPECT_EQ(BalancingWeights(images, 0.0)[0], 1.0);
+}
+
+TEST(BatchTest, ChannelsBecomeRgb) {
+  const torch::Tensor tensor = ImagesToTensor({{cv::Mat(2, 2, CV_8UC3, cv::Scalar(255, 0, 51)), {}}});  // blue, green, red
+  EXPECT_NEAR(tensor[0][0][0][0].item<float>(), 0.2F, 1e-6);
+  EXPECT_NEAR(tensor[0][2][1][1].item<float>(), 1.0F, 1e-6);
+}
+
+}  // namespace
+}  // namespace msf
