@@ -5,6 +5,7 @@
 #include <string>
 
 #include "evaluation/evaluation.h"
+#include "evaluation/statistics.h"
 #include "io/tum_dataset.h"
 #include "simulation/scenario.h"
 #include "simulation/simulator.h"

@@ -2,10 +2,10 @@
 #include <cstdint>
 #include <string_view>
 
+#include "detection/branch_merging.h"
 #include "detection/fusion.h"
 #include "detection/onnx_reader.h"
 #include "detection/specialize.h"
-#include "detection/branch_merging.h"
 #include "detection/storage_plan.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
