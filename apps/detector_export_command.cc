@@ -33,22 +33,29 @@ void Export(const ExportArguments& arguments) {
   options.height = arguments.height;
   options.half = !arguments.full_precision;
   Require(ExportOnnx(network.graph(), network.State(), options, arguments.out));
-  std::cout << arguments.out << ": " << config.classes.size() << " classes, " << CountParameters(network.graph()) << " parameters\n";
+  std::cout << arguments.out << ": " << config.classes.size() << " classes, "
+            << CountParameters(network.graph()) << " parameters\n";
 }
 
 }  // namespace
 
 void AddDetectorExportCommand(CLI::App& app) {
-  CLI::App* command = DetectorCommand(app)->add_subcommand("export", "Write trained weights as an ONNX file");
+  CLI::App* command =
+      DetectorCommand(app)->add_subcommand("export", "Write trained weights as an ONNX file");
   const auto arguments = std::make_shared<ExportArguments>();
-  command->add_option("--model", arguments->model, "yolov8n, yolov8n_msf, yolov8n_fpn, yolov8n_hrnet, yolov8n_coco or a YAML file");
-  command->add_option("--weights", arguments->weights, "weights.pt of a training, or COCO weights")->required();
+  command->add_option(
+      "--model", arguments->model,
+      "yolov8n, yolov8n_msf, yolov8n_fpn, yolov8n_hrnet, yolov8n_coco or a YAML file");
+  command->add_option("--weights", arguments->weights, "weights.pt of a training, or COCO weights")
+      ->required();
   command->add_option("--out", arguments->out, "ONNX file to write")->required();
   command->add_flag("--single-output", arguments->single_output,
-                    "one output with decoded boxes, as common tools use, for one input size; else raw heads for any size");
+                    "one output with decoded boxes, as common tools use, for one input size; else "
+                    "raw heads for any size");
   command->add_option("--width", arguments->width, "input width of the single-output form");
   command->add_option("--height", arguments->height, "input height of the single-output form");
-  command->add_flag("--full-precision", arguments->full_precision, "store weights as float32 instead of float16");
+  command->add_flag("--full-precision", arguments->full_precision,
+                    "store weights as float32 instead of float16");
   command->callback([arguments] { Export(*arguments); });
 }
 

@@ -41,10 +41,12 @@ class ProgressPrinter {
     const bool epoch_ends = progress.step + 1 == progress.steps;
     if (now - printed_ < std::chrono::seconds(20) && !epoch_ends) return;
     const double seconds = std::chrono::duration<double>(now - start_).count();
-    const double left = seconds / static_cast<double>(done - first_) * static_cast<double>(int64_t{progress.epochs} * progress.steps - done);
-    std::cerr << stage_ << " epoch " << progress.epoch + 1 << "/" << progress.epochs << " step " << progress.step + 1 << "/"
-              << progress.steps << " loss " << std::setprecision(4) << sum_ / count_ << ", " << std::setprecision(3) << left / 60.0
-              << " min left" << std::endl;
+    const double left = seconds / static_cast<double>(done - first_) *
+                        static_cast<double>(int64_t{progress.epochs} * progress.steps - done);
+    std::cerr << stage_ << " epoch " << progress.epoch + 1 << "/" << progress.epochs << " step "
+              << progress.step + 1 << "/" << progress.steps << " loss " << std::setprecision(4)
+              << sum_ / count_ << ", " << std::setprecision(3) << left / 60.0 << " min left"
+              << std::endl;
     printed_ = now;
     sum_ = 0.0;
     count_ = 0;
@@ -68,7 +70,8 @@ void Train(const TrainArguments& arguments) {
 
   std::vector<LabeledImage> images;
   for (const std::string& root : arguments.data) {
-    for (LabeledImage& image : Require(DecodeImages(Require(LoadVocSet(root, model.classes))))) images.push_back(std::move(image));
+    for (LabeledImage& image : Require(DecodeImages(Require(LoadVocSet(root, model.classes)))))
+      images.push_back(std::move(image));
   }
   std::cerr << images.size() << " images\n";
   Trainer trainer(model, options, std::move(images), ProgressPrinter());
@@ -76,22 +79,32 @@ void Train(const TrainArguments& arguments) {
   Require(trainer.Run(arguments.out));
   if (trainer.records().empty()) return;
   const EpochRecord& last = trainer.records().back();
-  std::cout << "epoch " << last.epoch << ": validation mAP50 " << last.map50 << ", mAP50-95 " << last.map50_95 << "\n";
+  std::cout << "epoch " << last.epoch << ": validation mAP50 " << last.map50 << ", mAP50-95 "
+            << last.map50_95 << "\n";
 }
 
 }  // namespace
 
 void AddDetectorTrainCommand(CLI::App& app) {
   CLI::App* detector = DetectorCommand(app);
-  CLI::App* command = detector->add_subcommand("train", "Train a detector on images in PASCAL VOC layout");
+  CLI::App* command =
+      detector->add_subcommand("train", "Train a detector on images in PASCAL VOC layout");
   const auto arguments = std::make_shared<TrainArguments>();
-  command->add_option("--data", arguments->data, "VOC folders, ROOT (its trainval set) or ROOT:SET")->required();
-  command->add_option("--model", arguments->model, "yolov8n, yolov8n_msf, yolov8n_fpn, yolov8n_hrnet or a YAML file");
-  command->add_option("--init", arguments->init, "weights to start from (YOLOv8n of 80 COCO classes, or of an earlier training)");
-  command->add_option("--out", arguments->out, "folder for checkpoint, weights and curves; an unfinished training there goes on")
+  command->add_option("--data", arguments->data, "VOC folders, ROOT (its trainval set) or ROOT:SET")
       ->required();
-  command->add_option("--set", arguments->settings, "option=value, e.g. epochs=20 or augmentation.mosaic=0\n" +
-                                                        DescribeOptions<TrainOptions>());
+  command->add_option("--model", arguments->model,
+                      "yolov8n, yolov8n_msf, yolov8n_fpn, yolov8n_hrnet or a YAML file");
+  command->add_option(
+      "--init", arguments->init,
+      "weights to start from (YOLOv8n of 80 COCO classes, or of an earlier training)");
+  command
+      ->add_option(
+          "--out", arguments->out,
+          "folder for checkpoint, weights and curves; an unfinished training there goes on")
+      ->required();
+  command->add_option(
+      "--set", arguments->settings,
+      "option=value, e.g. epochs=20 or augmentation.mosaic=0\n" + DescribeOptions<TrainOptions>());
   command->callback([arguments] { Train(*arguments); });
 }
 

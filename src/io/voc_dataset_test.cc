@@ -1,8 +1,8 @@
 #include "io/voc_dataset.h"
 
-#include <fstream>
-
 #include <gtest/gtest.h>
+
+#include <fstream>
 
 namespace msf {
 namespace {
@@ -10,13 +10,16 @@ namespace {
 const std::vector<std::string> kClasses = {"cat", "person"};
 
 std::string Annotation(const std::string& name, int x0, int y0, int x1, int y1) {
-  return "<annotation><filename>a.jpg</filename><size><width>100</width><height>50</height><depth>3</depth></size><object><name>" +
-         name + "</name><difficult>1</difficult><bndbox><xmin>" + std::to_string(x0) + "</xmin><ymin>" + std::to_string(y0) +
-         "</ymin><xmax>" + std::to_string(x1) + "</xmax><ymax>" + std::to_string(y1) + "</ymax></bndbox></object></annotation>";
+  return "<annotation><filename>a.jpg</filename><size><width>100</width><height>50</"
+         "height><depth>3</depth></size><object><name>" +
+         name + "</name><difficult>1</difficult><bndbox><xmin>" + std::to_string(x0) +
+         "</xmin><ymin>" + std::to_string(y0) + "</ymin><xmax>" + std::to_string(x1) +
+         "</xmax><ymax>" + std::to_string(y1) + "</ymax></bndbox></object></annotation>";
 }
 
 TEST(VocAnnotationTest, PixelsCountFromZeroAndEndsLieOutside) {
-  const StatusOr<VocImage> image = ParseVocAnnotation(Annotation("person", 1, 11, 10, 50), "a.xml", kClasses);
+  const StatusOr<VocImage> image =
+      ParseVocAnnotation(Annotation("person", 1, 11, 10, 50), "a.xml", kClasses);
   ASSERT_TRUE(image.ok()) << image.message();
   ASSERT_EQ(image->objects.size(), 1U);
   const VocObject& object = image->objects[0];
@@ -29,10 +32,15 @@ TEST(VocAnnotationTest, PixelsCountFromZeroAndEndsLieOutside) {
 }
 
 TEST(VocAnnotationTest, MistakesAreNamed) {
-  const auto message = [](const std::string& xml) { return ParseVocAnnotation(xml, "a.xml", kClasses).message(); };
-  EXPECT_NE(message(Annotation("person", 50, 10, 120, 20)).find("outside the 100x50 image"), std::string::npos);
+  const auto message = [](const std::string& xml) {
+    return ParseVocAnnotation(xml, "a.xml", kClasses).message();
+  };
+  EXPECT_NE(message(Annotation("person", 50, 10, 120, 20)).find("outside the 100x50 image"),
+            std::string::npos);
   EXPECT_NE(message(Annotation("person", 50, 10, 40, 20)).find("empty"), std::string::npos);
-  EXPECT_NE(message(Annotation("zebra", 1, 1, 10, 10)).find("'zebra' is none of the model's 2 classes"), std::string::npos);
+  EXPECT_NE(
+      message(Annotation("zebra", 1, 1, 10, 10)).find("'zebra' is none of the model's 2 classes"),
+      std::string::npos);
   EXPECT_NE(message("<annotation><size>").find("a.xml: no XML"), std::string::npos);
   EXPECT_NE(message("<annotation></annotation>").find("no image size"), std::string::npos);
   EXPECT_NE(message("").find("a.xml"), std::string::npos);
@@ -43,9 +51,12 @@ class VocSetTest : public testing::Test {
   void SetUp() override {
     root_ = std::filesystem::path(testing::TempDir()) / "voc";
     std::filesystem::remove_all(root_);
-    for (const char* folder : {"Annotations", "JPEGImages", "ImageSets/Main"}) std::filesystem::create_directories(root_ / folder);
+    for (const char* folder : {"Annotations", "JPEGImages", "ImageSets/Main"})
+      std::filesystem::create_directories(root_ / folder);
   }
-  void Write(const std::string& path, const std::string& text) { std::ofstream(root_ / path) << text; }
+  void Write(const std::string& path, const std::string& text) {
+    std::ofstream(root_ / path) << text;
+  }
 
   std::filesystem::path root_;
 };
@@ -68,11 +79,13 @@ TEST_F(VocSetTest, ReadsTheImagesOfASet) {
 TEST_F(VocSetTest, WhatIsMissingIsNamed) {
   EXPECT_NE(LoadVocSet(root_.string(), kClasses).message().find("trainval.txt"), std::string::npos);
   Write("ImageSets/Main/trainval.txt", "");
-  EXPECT_NE(LoadVocSet(root_.string(), kClasses).message().find("the set is empty"), std::string::npos);
+  EXPECT_NE(LoadVocSet(root_.string(), kClasses).message().find("the set is empty"),
+            std::string::npos);
   Write("ImageSets/Main/trainval.txt", "a\n");
   EXPECT_NE(LoadVocSet(root_.string(), kClasses).message().find("a.xml"), std::string::npos);
   Write("Annotations/a.xml", Annotation("cat", 1, 1, 10, 10));
-  EXPECT_NE(LoadVocSet(root_.string(), kClasses).message().find("a.jpg: is missing"), std::string::npos);
+  EXPECT_NE(LoadVocSet(root_.string(), kClasses).message().find("a.jpg: is missing"),
+            std::string::npos);
 }
 
 }  // namespace

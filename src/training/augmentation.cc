@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-
 #include <opencv2/imgproc.hpp>
 
 #include "training/photometric.h"
@@ -15,11 +14,15 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 const cv::Scalar kGrey(114, 114, 114);
 
-double Uniform(Random& random, double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+double Uniform(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
 
 cv::Matx33d Translation(double x, double y) { return {1, 0, x, 0, 1, y, 0, 0, 1}; }
 
-cv::Matx23d TopRows(const cv::Matx33d& map) { return {map(0, 0), map(0, 1), map(0, 2), map(1, 0), map(1, 1), map(1, 2)}; }
+cv::Matx23d TopRows(const cv::Matx33d& map) {
+  return {map(0, 0), map(0, 1), map(0, 2), map(1, 0), map(1, 1), map(1, 2)};
+}
 
 double DrawAngle(const AugmentationOptions& options, Random& random) {
   const double kind = Uniform(random, 0.0, 1.0);
@@ -31,7 +34,8 @@ double DrawAngle(const AugmentationOptions& options, Random& random) {
 }
 
 // Four images of full size around a point of a canvas of twice the side.
-LabeledImage MakeMosaic(const std::vector<LabeledImage>& images, size_t index, int side, Random& random) {
+LabeledImage MakeMosaic(const std::vector<LabeledImage>& images, size_t index, int side,
+                        Random& random) {
   LabeledImage mosaic{cv::Mat(2 * side, 2 * side, CV_8UC3, kGrey), {}};
   const int cx = static_cast<int>(Uniform(random, 0.5, 1.5) * side);
   const int cy = static_cast<int>(Uniform(random, 0.5, 1.5) * side);
@@ -42,8 +46,10 @@ LabeledImage MakeMosaic(const std::vector<LabeledImage>& images, size_t index, i
     const double x = quadrant % 2 == 0 ? cx - image.pixels.cols * scale : cx;
     const double y = quadrant / 2 == 0 ? cy - image.pixels.rows * scale : cy;
     const cv::Matx23d map(scale, 0, x, 0, scale, y);
-    cv::warpAffine(image.pixels, mosaic.pixels, map, mosaic.pixels.size(), cv::INTER_LINEAR, cv::BORDER_TRANSPARENT);
-    for (const VocObject& object : TransformObjects(image.objects, map, mosaic.pixels.size(), 0.1)) {
+    cv::warpAffine(image.pixels, mosaic.pixels, map, mosaic.pixels.size(), cv::INTER_LINEAR,
+                   cv::BORDER_TRANSPARENT);
+    for (const VocObject& object :
+         TransformObjects(image.objects, map, mosaic.pixels.size(), 0.1)) {
       mosaic.objects.push_back(object);
     }
   }
@@ -66,10 +72,14 @@ cv::Point2d BorderCropShift(const std::vector<VocObject>& objects, int side, Ran
   }
 }
 
-// Rotation, scale, flip and shift about the middle of the source, ending in the middle of the picture.
-cv::Matx33d DrawMap(const LabeledImage& source, bool is_mosaic, int side, const AugmentationOptions& options, Random& random) {
+// Rotation, scale, flip and shift about the middle of the source, ending in the middle of the
+// picture.
+cv::Matx33d DrawMap(const LabeledImage& source, bool is_mosaic, int side,
+                    const AugmentationOptions& options, Random& random) {
   const double angle = DrawAngle(options, random) * kPi / 180.0;
-  const double fit = is_mosaic ? 1.0 : static_cast<double>(side) / std::max(source.pixels.cols, source.pixels.rows);
+  const double fit =
+      is_mosaic ? 1.0
+                : static_cast<double>(side) / std::max(source.pixels.cols, source.pixels.rows);
   const double scale = fit * Uniform(random, 1.0 - options.scale, 1.0 + options.scale);
   const double flip = Uniform(random, 0.0, 1.0) < options.flip ? -1.0 : 1.0;
   const cv::Matx33d linear(flip * scale * std::cos(angle), -scale * std::sin(angle), 0,  //
@@ -79,7 +89,8 @@ cv::Matx33d DrawMap(const LabeledImage& source, bool is_mosaic, int side, const 
   cv::Matx33d map = Translation(0.5 * side + dx, 0.5 * side + dy) * linear *
                     Translation(-0.5 * source.pixels.cols, -0.5 * source.pixels.rows);
   if (Uniform(random, 0.0, 1.0) < options.border_crop) {
-    const std::vector<VocObject> placed = TransformObjects(source.objects, TopRows(map), {side, side}, 0.5);
+    const std::vector<VocObject> placed =
+        TransformObjects(source.objects, TopRows(map), {side, side}, 0.5);
     if (!placed.empty()) {
       const cv::Point2d shift = BorderCropShift(placed, side, random);
       map = Translation(shift.x, shift.y) * map;
@@ -91,20 +102,23 @@ cv::Matx33d DrawMap(const LabeledImage& source, bool is_mosaic, int side, const 
 }  // namespace
 
 Status AugmentationOptions::Check() const {
-  for (double share : {mosaic, rotate_upright, rotate_quarter, border_crop, flip, blur, min_visible, saturation, value, hue}) {
-    if (!(share >= 0.0 && share <= 1.0)) return Status::Error("shares of the augmentation must lie in [0, 1]");
+  for (double share : {mosaic, rotate_upright, rotate_quarter, border_crop, flip, blur, min_visible,
+                       saturation, value, hue}) {
+    if (!(share >= 0.0 && share <= 1.0))
+      return Status::Error("shares of the augmentation must lie in [0, 1]");
   }
   if (!(scale >= 0.0 && scale < 1.0)) return Status::Error("augmentation.scale must lie in [0, 1)");
   return Status::Ok();
 }
 
-std::vector<VocObject> TransformObjects(const std::vector<VocObject>& objects, const cv::Matx23d& map, cv::Size size,
-                                        double min_visible) {
+std::vector<VocObject> TransformObjects(const std::vector<VocObject>& objects,
+                                        const cv::Matx23d& map, cv::Size size, double min_visible) {
   std::vector<VocObject> kept;
   for (const VocObject& object : objects) {
     float x0 = 1e9F, y0 = 1e9F, x1 = -1e9F, y1 = -1e9F;
-    for (const cv::Vec2f& corner : {cv::Vec2f(object.x0, object.y0), cv::Vec2f(object.x1, object.y0),
-                                   cv::Vec2f(object.x0, object.y1), cv::Vec2f(object.x1, object.y1)}) {
+    for (const cv::Vec2f& corner :
+         {cv::Vec2f(object.x0, object.y0), cv::Vec2f(object.x1, object.y0),
+          cv::Vec2f(object.x0, object.y1), cv::Vec2f(object.x1, object.y1)}) {
       const auto x = static_cast<float>(map(0, 0) * corner[0] + map(0, 1) * corner[1] + map(0, 2));
       const auto y = static_cast<float>(map(1, 0) * corner[0] + map(1, 1) * corner[1] + map(1, 2));
       x0 = std::min(x0, x);
@@ -118,7 +132,8 @@ std::vector<VocObject> TransformObjects(const std::vector<VocObject>& objects, c
     cut.x1 = std::clamp(x1, 0.0F, static_cast<float>(size.width));
     cut.y1 = std::clamp(y1, 0.0F, static_cast<float>(size.height));
     const float visible = (cut.x1 - cut.x0) * (cut.y1 - cut.y0) / ((x1 - x0) * (y1 - y0));
-    if (visible >= min_visible && cut.x1 - cut.x0 >= 2.0F && cut.y1 - cut.y0 >= 2.0F) kept.push_back(cut);
+    if (visible >= min_visible && cut.x1 - cut.x0 >= 2.0F && cut.y1 - cut.y0 >= 2.0F)
+      kept.push_back(cut);
   }
   return kept;
 }
@@ -129,7 +144,8 @@ LabeledImage MakeTrainingPicture(const std::vector<LabeledImage>& images, size_t
   const LabeledImage source = is_mosaic ? MakeMosaic(images, index, side, random) : images[index];
   const cv::Matx23d map = TopRows(DrawMap(source, is_mosaic, side, options, random));
   LabeledImage picture;
-  cv::warpAffine(source.pixels, picture.pixels, map, {side, side}, cv::INTER_LINEAR, cv::BORDER_CONSTANT, kGrey);
+  cv::warpAffine(source.pixels, picture.pixels, map, {side, side}, cv::INTER_LINEAR,
+                 cv::BORDER_CONSTANT, kGrey);
   picture.objects = TransformObjects(source.objects, map, {side, side}, options.min_visible);
   ChangeColours(picture.pixels, options.hue, options.saturation, options.value, random);
   if (Uniform(random, 0.0, 1.0) < options.blur) Blur(picture.pixels, random);

@@ -1,11 +1,11 @@
-// Training pictures made from labelled images: mosaics, rotations, border crops, scales, flips, colours and blur.
+// Training pictures made from labelled images: mosaics, rotations, border crops, scales, flips,
+// colours and blur.
 #pragma once
 
+#include <opencv2/core.hpp>
 #include <random>
 #include <string>
 #include <vector>
-
-#include <opencv2/core.hpp>
 
 #include "io/voc_dataset.h"
 #include "util/status.h"
@@ -37,31 +37,36 @@ struct AugmentationOptions {
   void Visit(Visitor& visit) {
     visit("mosaic", mosaic, "share of pictures put together from four images");
     visit("rotate_upright", rotate_upright, "share of pictures rotated by at most 5 degrees");
-    visit("rotate_quarter", rotate_quarter, "share of pictures rotated by about a quarter turn to either side");
-    visit("rotate_degrees", rotate_degrees, "largest rotation of the other pictures, degrees to either side");
+    visit("rotate_quarter", rotate_quarter,
+          "share of pictures rotated by about a quarter turn to either side");
+    visit("rotate_degrees", rotate_degrees,
+          "largest rotation of the other pictures, degrees to either side");
     visit("scale", scale, "pictures are scaled by 1 - scale to 1 + scale");
     visit("translate", translate, "largest shift as a part of the picture's side");
-    visit("border_crop", border_crop, "share of pictures shifted so that the border cuts 30 to 65 % of some object");
+    visit("border_crop", border_crop,
+          "share of pictures shifted so that the border cuts 30 to 65 % of some object");
     visit("flip", flip, "share of pictures mirrored left to right");
     visit("hue", hue, "largest relative change of hue");
     visit("saturation", saturation, "largest relative change of saturation");
     visit("value", value, "largest relative change of brightness");
     visit("blur", blur, "share of pictures blurred, by motion or defocus");
-    visit("min_visible", min_visible, "objects with a smaller visible part of their box lose their label");
+    visit("min_visible", min_visible,
+          "objects with a smaller visible part of their box lose their label");
   }
   Status Check() const;
 };
 
 using Random = std::mt19937_64;
 
-// The square picture of `side` pixels made from images[index] (and random others for a mosaic); borders are grey (114).
-// The same generator state gives the same picture.
+// The square picture of `side` pixels made from images[index] (and random others for a mosaic);
+// borders are grey (114). The same generator state gives the same picture.
 LabeledImage MakeTrainingPicture(const std::vector<LabeledImage>& images, size_t index, int side,
                                  const AugmentationOptions& options, Random& random);
 
-// `objects` under the affine map (2x3, old pixels to new ones): the box around the mapped corners, cut to `size`. Objects that keep less
-// than `min_visible` of the mapped box, or less than 2 pixels of a side, are dropped.
-std::vector<VocObject> TransformObjects(const std::vector<VocObject>& objects, const cv::Matx23d& map, cv::Size size,
-                                        double min_visible);
+// `objects` under the affine map (2x3, old pixels to new ones): the box around the mapped corners,
+// cut to `size`. Objects that keep less than `min_visible` of the mapped box, or less than 2 pixels
+// of a side, are dropped.
+std::vector<VocObject> TransformObjects(const std::vector<VocObject>& objects,
+                                        const cv::Matx23d& map, cv::Size size, double min_visible);
 
 }  // namespace msf

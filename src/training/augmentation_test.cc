@@ -1,6 +1,7 @@
 #include "training/augmentation.h"
 
 #include <gtest/gtest.h>
+
 #include <opencv2/imgproc.hpp>
 
 namespace msf {
@@ -10,8 +11,9 @@ namespace {
 LabeledImage BrightRectangle(cv::Size size, cv::Rect object) {
   LabeledImage image{cv::Mat(size, CV_8UC3, cv::Scalar(0, 0, 0)), {}};
   cv::rectangle(image.pixels, object, cv::Scalar(255, 255, 255), cv::FILLED);
-  image.objects.push_back({3, static_cast<float>(object.x), static_cast<float>(object.y), static_cast<float>(object.br().x),
-                           static_cast<float>(object.br().y), false});
+  image.objects.push_back({3, static_cast<float>(object.x), static_cast<float>(object.y),
+                           static_cast<float>(object.br().x), static_cast<float>(object.br().y),
+                           false});
   return image;
 }
 
@@ -32,7 +34,8 @@ AugmentationOptions GeometryOnly() {
 TEST(AugmentationTest, QuarterTurnMovesBoxesExactly) {
   // x' = 100 - y, y' = x: a quarter turn of a 100 pixel square.
   const cv::Matx23d turn(0, -1, 100, 1, 0, 0);
-  const std::vector<VocObject> moved = TransformObjects({{0, 10, 20, 30, 60, false}}, turn, {100, 100}, 0.5);
+  const std::vector<VocObject> moved =
+      TransformObjects({{0, 10, 20, 30, 60, false}}, turn, {100, 100}, 0.5);
   ASSERT_EQ(moved.size(), 1U);
   EXPECT_FLOAT_EQ(moved[0].x0, 40);
   EXPECT_FLOAT_EQ(moved[0].y0, 10);
@@ -43,7 +46,7 @@ TEST(AugmentationTest, QuarterTurnMovesBoxesExactly) {
 TEST(AugmentationTest, HiddenObjectsLoseTheirLabel) {
   const cv::Matx23d shift(1, 0, -80, 0, 1, 0);
   const std::vector<VocObject> objects = {{0, 0, 0, 100, 50, false}};
-  EXPECT_EQ(TransformObjects(objects, shift, {200, 200}, 0.1).size(), 1U);   // a fifth is left
+  EXPECT_EQ(TransformObjects(objects, shift, {200, 200}, 0.1).size(), 1U);  // a fifth is left
   EXPECT_TRUE(TransformObjects(objects, shift, {200, 200}, 0.3).empty());
 }
 
@@ -58,8 +61,10 @@ TEST(AugmentationTest, LabelsStayOnTheirPixels) {
       const cv::Rect bright = BrightPixels(picture.pixels);
       if (picture.objects.empty() || bright.empty()) continue;
       cv::Rect2f labels(picture.objects[0].x0, picture.objects[0].y0, 0, 0);
-      for (const VocObject& o : picture.objects) labels |= cv::Rect2f(o.x0, o.y0, o.x1 - o.x0, o.y1 - o.y0);
-      // Labels are hulls of rotated rectangles and may be larger where the border cuts; never smaller than what is seen.
+      for (const VocObject& o : picture.objects)
+        labels |= cv::Rect2f(o.x0, o.y0, o.x1 - o.x0, o.y1 - o.y0);
+      // Labels are hulls of rotated rectangles and may be larger where the border cuts; never
+      // smaller than what is seen.
       EXPECT_LE(labels.x, bright.x + 2) << seed;
       EXPECT_LE(labels.y, bright.y + 2) << seed;
       EXPECT_GE(labels.br().x, bright.br().x - 2) << seed;
@@ -86,7 +91,8 @@ TEST(AugmentationTest, BorderCropCutsObjects) {
 }
 
 TEST(AugmentationTest, SameSeedGivesTheSamePicture) {
-  const std::vector<LabeledImage> images = {BrightRectangle({320, 240}, {100, 60, 90, 120}), BrightRectangle({200, 320}, {50, 50, 100, 200})};
+  const std::vector<LabeledImage> images = {BrightRectangle({320, 240}, {100, 60, 90, 120}),
+                                            BrightRectangle({200, 320}, {50, 50, 100, 200})};
   Random a(7), b(7), c(8);
   const LabeledImage first = MakeTrainingPicture(images, 0, 320, {}, a);
   const LabeledImage again = MakeTrainingPicture(images, 0, 320, {}, b);

@@ -1,7 +1,7 @@
-#include <functional>
-
 #include <torch/types.h>
 #include <torch/utils.h>
+
+#include <functional>
 
 #include "training/trainer.h"
 #include "util/options.h"
@@ -25,8 +25,8 @@ NamedTensors Extract(const NamedTensors& source, const std::string& prefix) {
 }
 
 torch::Tensor RecordToTensor(const EpochRecord& r) {
-  return torch::tensor({static_cast<double>(r.epoch), r.learning_rate, r.box_loss, r.class_loss, r.distribution_loss,
-                        r.imitation_loss, r.map50, r.map50_95});
+  return torch::tensor({static_cast<double>(r.epoch), r.learning_rate, r.box_loss, r.class_loss,
+                        r.distribution_loss, r.imitation_loss, r.map50, r.map50_95});
 }
 
 EpochRecord RecordFromTensor(const torch::Tensor& row) {
@@ -49,9 +49,11 @@ Status Trainer::SaveCheckpoint(const std::filesystem::path& file) const {
   Insert(all, "optimizer/", optimizer_->State());
   all["average_updates"] = torch::tensor(static_cast<float>(average_->updates()));
   all["records"] = torch::zeros({static_cast<int64_t>(records_.size()), kRecordFields});
-  for (size_t i = 0; i < records_.size(); ++i) all["records"][static_cast<int64_t>(i)] = RecordToTensor(records_[i]);
+  for (size_t i = 0; i < records_.size(); ++i)
+    all["records"][static_cast<int64_t>(i)] = RecordToTensor(records_[i]);
   const std::string fingerprint = OptionsFingerprint();
-  all["options"] = torch::tensor(std::vector<int>(fingerprint.begin(), fingerprint.end())).to(torch::kFloat);
+  all["options"] =
+      torch::tensor(std::vector<int>(fingerprint.begin(), fingerprint.end())).to(torch::kFloat);
   return SaveTensors(file, all);
 }
 
@@ -63,13 +65,17 @@ Status Trainer::LoadCheckpoint(const std::filesystem::path& file) {
   }
   const torch::Tensor letters = all->at("options");
   std::string fingerprint;
-  for (int64_t i = 0; i < letters.size(0); ++i) fingerprint += static_cast<char>(letters[i].item<float>());
+  for (int64_t i = 0; i < letters.size(0); ++i)
+    fingerprint += static_cast<char>(letters[i].item<float>());
   if (fingerprint != OptionsFingerprint()) {
-    return Status::Error(file.string() + ": was written by a training with another model or other options; give another --out or the same options");
+    return Status::Error(file.string() +
+                         ": was written by a training with another model or other options; give "
+                         "another --out or the same options");
   }
   MSF_RETURN_IF_ERROR(network_.Load(Extract(*all, "network/")));
   optimizer_->Load(Extract(*all, "optimizer/"));
-  average_->Load(Extract(*all, "average/"), static_cast<int64_t>(all->at("average_updates").item<float>()));
+  average_->Load(Extract(*all, "average/"),
+                 static_cast<int64_t>(all->at("average_updates").item<float>()));
   records_.clear();
   const torch::Tensor& rows = all->at("records");
   for (int64_t i = 0; i < rows.size(0); ++i) records_.push_back(RecordFromTensor(rows[i]));

@@ -1,10 +1,11 @@
-// What a detector is trained on: task-aligned assignment of labels to anchors (TOOD, Feng et al. 2021) and the loss of the YOLOv8
-// recipe: 7.5 * (1 - CIoU) + 0.5 * class BCE + 1.5 * distribution focal loss.
+// What a detector is trained on: task-aligned assignment of labels to anchors (TOOD, Feng et al.
+// 2021) and the loss of the YOLOv8 recipe: 7.5 * (1 - CIoU) + 0.5 * class BCE + 1.5 * distribution
+// focal loss.
 #pragma once
 
-#include <vector>
-
 #include <torch/types.h>
+
+#include <vector>
 
 #include "io/voc_dataset.h"
 #include "training/head_decoding.h"
@@ -27,11 +28,13 @@ struct Assignment {
   torch::Tensor target_scores;  // [batch, A, classes] in [0, 1]
 };
 
-// score^0.5 * IoU^6 ranks the anchors whose centre lies inside an object; its ten best are assigned to it; an anchor claimed twice goes
-// to the object it overlaps most. Target scores are the alignment scaled so that an object's best anchor gets its best IoU.
+// score^0.5 * IoU^6 ranks the anchors whose centre lies inside an object; its ten best are assigned
+// to it; an anchor claimed twice goes to the object it overlaps most. Target scores are the
+// alignment scaled so that an object's best anchor gets its best IoU.
 Assignment AssignLabels(const DecodedHeads& decoded, const BatchLabels& labels);
 
-// IoU of two sets of boxes, minus CIoU's penalties for distance and aspect ratio where `complete`; shapes broadcast: [..., 4] -> [...].
+// IoU of two sets of boxes, minus CIoU's penalties for distance and aspect ratio where `complete`;
+// shapes broadcast: [..., 4] -> [...].
 torch::Tensor BoxIou(const torch::Tensor& a, const torch::Tensor& b, bool complete);
 
 struct LossTerms {

@@ -1,18 +1,20 @@
 #include "training/detection_loss.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
 #include <torch/types.h>
+
+#include <cmath>
 
 namespace msf {
 namespace {
 
 float Iou(std::vector<float> a, std::vector<float> b, bool complete) {
-  return BoxIou(torch::tensor(a).view({1, 4}), torch::tensor(b).view({1, 4}), complete).item<float>();
+  return BoxIou(torch::tensor(a).view({1, 4}), torch::tensor(b).view({1, 4}), complete)
+      .item<float>();
 }
 
-// Heads for a square picture of `side` pixels: all sides reach `reach` cells, all classes have the logit `logit`.
+// Heads for a square picture of `side` pixels: all sides reach `reach` cells, all classes have the
+// logit `logit`.
 HeadOutputs UniformHeads(int side, int classes, int reach, float logit) {
   HeadOutputs heads;
   for (int stride : {8, 16, 32}) {
@@ -44,7 +46,8 @@ TEST(BoxIouTest, HandComputedCases) {
   EXPECT_NEAR(Iou({0, 0, 10, 10}, {5, 0, 15, 10}, true), 1.0 / 3.0 - 25.0 / 325.0, 1e-4);
   // Same centre, 10x10 and 20x5: IoU 1/3, v = 4/pi^2 (atan 4 - atan 1)^2, weight v / (v - IoU + 1).
   const double v = 4.0 / (M_PI * M_PI) * std::pow(std::atan(4.0) - std::atan(1.0), 2);
-  EXPECT_NEAR(Iou({5, 5, 15, 15}, {0, 7.5, 20, 12.5}, true), 1.0 / 3.0 - v * v / (v - 1.0 / 3.0 + 1.0), 1e-4);
+  EXPECT_NEAR(Iou({5, 5, 15, 15}, {0, 7.5, 20, 12.5}, true),
+              1.0 / 3.0 - v * v / (v - 1.0 / 3.0 + 1.0), 1e-4);
 }
 
 TEST(AssignmentTest, OnlyCentresInsideAnObjectAndAtMostTen) {
@@ -59,9 +62,11 @@ TEST(AssignmentTest, OnlyCentresInsideAnObjectAndAtMostTen) {
   }
   // Scores only for the object's class; the best anchor's is the best IoU.
   EXPECT_EQ(assignment.target_scores.select(2, 0).max().item<float>(), 0.0F);
-  const torch::Tensor iou = BoxIou(decoded.boxes[0], torch::tensor({0.0F, 0.0F, 40.0F, 40.0F}), false);
+  const torch::Tensor iou =
+      BoxIou(decoded.boxes[0], torch::tensor({0.0F, 0.0F, 40.0F, 40.0F}), false);
   const torch::Tensor inside = decoded.anchors.amax(-1).lt(40.0);
-  EXPECT_NEAR(assignment.target_scores.max().item<float>(), (iou * inside).max().item<float>(), 1e-4);
+  EXPECT_NEAR(assignment.target_scores.max().item<float>(), (iou * inside).max().item<float>(),
+              1e-4);
 }
 
 TEST(AssignmentTest, AnchorClaimedTwiceGoesToTheLargerOverlap) {
@@ -73,15 +78,20 @@ TEST(AssignmentTest, AnchorClaimedTwiceGoesToTheLargerOverlap) {
   const torch::Tensor chosen = assignment.foreground[0].nonzero().squeeze(1);
   for (int64_t i = 0; i < chosen.size(0); ++i) {
     const int64_t anchor = chosen[i].item<int64_t>();
-    const float big = Iou({0, 0, 40, 40}, {decoded.boxes[0][anchor][0].item<float>(), decoded.boxes[0][anchor][1].item<float>(),
-                                           decoded.boxes[0][anchor][2].item<float>(), decoded.boxes[0][anchor][3].item<float>()},
-                          false);
-    EXPECT_GE(BoxIou(decoded.boxes[0][anchor], assignment.target_boxes[0][anchor], false).item<float>(), big - 1e-5F);
+    const float big =
+        Iou({0, 0, 40, 40},
+            {decoded.boxes[0][anchor][0].item<float>(), decoded.boxes[0][anchor][1].item<float>(),
+             decoded.boxes[0][anchor][2].item<float>(), decoded.boxes[0][anchor][3].item<float>()},
+            false);
+    EXPECT_GE(
+        BoxIou(decoded.boxes[0][anchor], assignment.target_boxes[0][anchor], false).item<float>(),
+        big - 1e-5F);
   }
 }
 
 TEST(DetectionLossTest, PicturesWithoutObjectsOnlyTrainTheScores) {
-  const LossTerms terms = DetectionLoss(DecodeHeads(UniformHeads(64, 2, 2, -3.0F), 64), PadLabels({{}}));
+  const LossTerms terms =
+      DetectionLoss(DecodeHeads(UniformHeads(64, 2, 2, -3.0F), 64), PadLabels({{}}));
   EXPECT_EQ(terms.box, 0.0);
   EXPECT_EQ(terms.distribution, 0.0);
   // 84 anchors, 2 classes, log(1 + e^-3) each.

@@ -1,9 +1,9 @@
 #include "training/distillation.h"
 
-#include <algorithm>
-
 #include <torch/types.h>
 #include <torch/utils.h>
+
+#include <algorithm>
 
 #include "training/mixed_precision.h"
 #include "util/check.h"
@@ -19,7 +19,8 @@ torch::Tensor RelativeError(const torch::Tensor& given, const torch::Tensor& wan
   return ((given.to(torch::kFloat) - target).square() / spread).mean();
 }
 
-// The same for class logits, weighted by the teacher's scores: almost all cells are background, the few others are what matters.
+// The same for class logits, weighted by the teacher's scores: almost all cells are background, the
+// few others are what matters.
 torch::Tensor ScoreWeightedError(const torch::Tensor& given, const torch::Tensor& wanted) {
   constexpr double kBackgroundWeight = 0.02;
   const torch::Tensor target = wanted.to(torch::kFloat);
@@ -28,16 +29,19 @@ torch::Tensor ScoreWeightedError(const torch::Tensor& given, const torch::Tensor
   return error.sum() / (weight.sum() * (target.var() + 1e-3));
 }
 
-// A value of the student's node `index`, if it is the output of a layer, is the teacher's output of that layer.
+// A value of the student's node `index`, if it is the output of a layer, is the teacher's output of
+// that layer.
 int TeacherNode(const ModelGraph& student, const ModelGraph& teacher, int index) {
   if (index == 0) return 0;
   for (size_t layer = 0; layer < student.layers.size() && layer < teacher.layers.size(); ++layer) {
-    if (student.LayerOutput(static_cast<int>(layer)) == index) return teacher.LayerOutput(static_cast<int>(layer));
+    if (student.LayerOutput(static_cast<int>(layer)) == index)
+      return teacher.LayerOutput(static_cast<int>(layer));
   }
   MSF_CHECK(false, "layers may only use outputs of layers");
 }
 
-// A square part of a layer's output; the input is `step` times as large. Early layers have far more pixels than their few weights need.
+// A square part of a layer's output; the input is `step` times as large. Early layers have far more
+// pixels than their few weights need.
 struct Window {
   int64_t top = 0, left = 0, size = 0, step = 1;
 };
@@ -57,27 +61,32 @@ torch::Tensor Cut(const torch::Tensor& map, int64_t top, int64_t left, int64_t s
 }
 
 bool SameKind(const std::string& a, const std::string& b) {
-  const auto kind = [](const std::string& type) { return type == "MSFConv" ? std::string("Conv") : type; };
+  const auto kind = [](const std::string& type) {
+    return type == "MSFConv" ? std::string("Conv") : type;
+  };
   return kind(a) == kind(b);
 }
 
 }  // namespace
 
-LayerDistillation::LayerDistillation(const Network& student, const Network& teacher, const std::vector<std::string>& new_tensors)
+LayerDistillation::LayerDistillation(const Network& student, const Network& teacher,
+                                     const std::vector<std::string>& new_tensors)
     : student_(student), teacher_(teacher) {
   const ModelGraph& own = student.graph();
   const ModelGraph& other = teacher.graph();
   for (int i = 0; i < static_cast<int>(std::min(own.layers.size(), other.layers.size())); ++i) {
     if (!SameKind(own.layers[i].type, other.layers[i].type)) break;
     const std::string prefix = "model." + std::to_string(i) + ".";
-    const bool is_new = std::any_of(new_tensors.begin(), new_tensors.end(),
-                                    [&](const std::string& name) { return name.starts_with(prefix); });
+    const bool is_new =
+        std::any_of(new_tensors.begin(), new_tensors.end(),
+                    [&](const std::string& name) { return name.starts_with(prefix); });
     if (is_new) layers_.push_back(i);
   }
 }
 
-torch::Tensor LayerDistillation::LayerError(int layer, std::vector<torch::Tensor>& values,
-                                            const std::vector<torch::Tensor>& teacher_values) const {
+torch::Tensor LayerDistillation::LayerError(
+    int layer, std::vector<torch::Tensor>& values,
+    const std::vector<torch::Tensor>& teacher_values) const {
   const ModelGraph& own = student_.graph();
   const ModelGraph& other = teacher_.graph();
   const GraphLayer& nodes = own.layers[layer];
@@ -98,12 +107,14 @@ torch::Tensor LayerDistillation::LayerError(int layer, std::vector<torch::Tensor
   student_.RunNodes(nodes.begin, nodes.end, values);
   input = full;
   // Near the window's edge the student does not see what the teacher saw.
-  const int64_t margin = window.size < wanted.size(2) ? kWindowMargin : 0, inner = window.size - 2 * margin;
+  const int64_t margin = window.size < wanted.size(2) ? kWindowMargin : 0,
+                inner = window.size - 2 * margin;
   return RelativeError(Cut(values[own.LayerOutput(layer)], margin, margin, inner),
                        Cut(wanted, window.top + margin, window.left + margin, inner));
 }
 
-std::vector<torch::Tensor> LayerDistillation::LayerErrors(const torch::Tensor& images, bool bfloat16) const {
+std::vector<torch::Tensor> LayerDistillation::LayerErrors(const torch::Tensor& images,
+                                                          bool bfloat16) const {
   const MixedPrecision mixed(bfloat16);
   std::vector<torch::Tensor> teacher_values(teacher_.graph().nodes.size());
   teacher_values[0] = images.contiguous(torch::MemoryFormat::ChannelsLast);
@@ -124,13 +135,15 @@ torch::Tensor LayerDistillation::Loss(const torch::Tensor& images, bool bfloat16
 std::vector<double> LayerDistillation::Errors(const torch::Tensor& images, bool bfloat16) const {
   const torch::NoGradGuard no_grad;
   std::vector<double> errors;
-  for (const torch::Tensor& error : LayerErrors(images, bfloat16)) errors.push_back(error.item<double>());
+  for (const torch::Tensor& error : LayerErrors(images, bfloat16))
+    errors.push_back(error.item<double>());
   return errors;
 }
 
 torch::Tensor ClassDistance(const HeadOutputs& student, const HeadOutputs& teacher) {
   torch::Tensor sum = torch::zeros({});
-  for (size_t i = 0; i < student.classes.size(); ++i) sum = sum + ScoreWeightedError(student.classes[i], teacher.classes[i]);
+  for (size_t i = 0; i < student.classes.size(); ++i)
+    sum = sum + ScoreWeightedError(student.classes[i], teacher.classes[i]);
   return sum / static_cast<double>(student.classes.size());
 }
 

@@ -18,7 +18,8 @@ torch::Tensor Dense(const torch::Tensor& x) {
 
 class SiluFunction : public torch::autograd::Function<SiluFunction> {
  public:
-  static torch::Tensor forward(torch::autograd::AutogradContext* context, const torch::Tensor& input) {
+  static torch::Tensor forward(torch::autograd::AutogradContext* context,
+                               const torch::Tensor& input) {
     const torch::Tensor x = Dense(input);
     context->save_for_backward({x});
     torch::Tensor y = at::empty_like(x);
@@ -43,7 +44,8 @@ class SiluFunction : public torch::autograd::Function<SiluFunction> {
     if (x.scalar_type() == torch::kBFloat16) {
       SiluBackward(Bits(x), Bits(gradient), Bits(result), count);
     } else {
-      SiluBackward(x.data_ptr<float>(), gradient.data_ptr<float>(), result.data_ptr<float>(), count);
+      SiluBackward(x.data_ptr<float>(), gradient.data_ptr<float>(), result.data_ptr<float>(),
+                   count);
     }
     return {result};
   }

@@ -8,7 +8,8 @@ namespace msf {
 DecodedHeads DecodeHeads(const HeadOutputs& heads, int image_width) {
   std::vector<torch::Tensor> classes, sides, anchors, strides;
   for (size_t i = 0; i < heads.boxes.size(); ++i) {
-    const int64_t batch = heads.boxes[i].size(0), height = heads.boxes[i].size(2), width = heads.boxes[i].size(3);
+    const int64_t batch = heads.boxes[i].size(0), height = heads.boxes[i].size(2),
+                  width = heads.boxes[i].size(3);
     const double stride = static_cast<double>(image_width) / static_cast<double>(width);
     const auto flat = [&](const torch::Tensor& map) {
       return map.permute({0, 2, 3, 1}).reshape({batch, height * width, -1}).to(torch::kFloat);
@@ -28,8 +29,10 @@ DecodedHeads DecodeHeads(const HeadOutputs& heads, int image_width) {
   const torch::Tensor flat_sides = torch::cat(sides, 1);
   decoded.side_logits = flat_sides.view({flat_sides.size(0), flat_sides.size(1), 4, kBoxBins});
   const torch::Tensor bins = torch::arange(kBoxBins, torch::kFloat);
-  const torch::Tensor reach = torch::matmul(decoded.side_logits.softmax(-1), bins) * decoded.strides.view({1, -1, 1});
-  decoded.boxes = torch::cat({decoded.anchors - reach.narrow(-1, 0, 2), decoded.anchors + reach.narrow(-1, 2, 2)}, -1);
+  const torch::Tensor reach =
+      torch::matmul(decoded.side_logits.softmax(-1), bins) * decoded.strides.view({1, -1, 1});
+  decoded.boxes = torch::cat(
+      {decoded.anchors - reach.narrow(-1, 0, 2), decoded.anchors + reach.narrow(-1, 2, 2)}, -1);
   return decoded;
 }
 

@@ -16,7 +16,8 @@ struct DecodedHeads {
   torch::Tensor strides;       // [A]: pixels per cell
 };
 
-// Sides are the expectation over kBoxBins softmax bins times the stride, measured from the cell's centre.
+// Sides are the expectation over kBoxBins softmax bins times the stride, measured from the cell's
+// centre.
 DecodedHeads DecodeHeads(const HeadOutputs& heads, int image_width);
 
 }  // namespace msf

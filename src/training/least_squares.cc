@@ -1,9 +1,8 @@
 #include "training/least_squares.h"
 
-#include <algorithm>
-
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 
 namespace msf {
 
@@ -13,12 +12,14 @@ using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::Row
 
 Eigen::MatrixXd ToEigen(const torch::Tensor& tensor) {
   const torch::Tensor dense = tensor.to(torch::kFloat).contiguous();
-  return Eigen::Map<const RowMajor>(dense.data_ptr<float>(), dense.size(0), dense.size(1)).cast<double>();
+  return Eigen::Map<const RowMajor>(dense.data_ptr<float>(), dense.size(0), dense.size(1))
+      .cast<double>();
 }
 
 torch::Tensor ToTensor(const Eigen::MatrixXd& matrix) {
   torch::Tensor tensor = torch::empty({matrix.rows(), matrix.cols()}, torch::kFloat);
-  Eigen::Map<RowMajor>(tensor.data_ptr<float>(), matrix.rows(), matrix.cols()) = matrix.cast<float>();
+  Eigen::Map<RowMajor>(tensor.data_ptr<float>(), matrix.rows(), matrix.cols()) =
+      matrix.cast<float>();
   return tensor;
 }
 

@@ -5,10 +5,12 @@
 
 namespace msf {
 
-// Pixels of a map [batch, channels, h, w] as rows [samples, channels] (float), at most `most` of them, evenly spread.
+// Pixels of a map [batch, channels, h, w] as rows [samples, channels] (float), at most `most` of
+// them, evenly spread.
 torch::Tensor PixelRows(const torch::Tensor& map, int64_t most);
 
-// X with F X ~ T in the least-squares sense, slightly regularised: [samples, f], [samples, t] -> [f, t].
+// X with F X ~ T in the least-squares sense, slightly regularised: [samples, f], [samples, t] ->
+// [f, t].
 torch::Tensor SolveLeastSquares(const torch::Tensor& features, const torch::Tensor& targets);
 
 // The `count` eigenvectors of a symmetric matrix with the largest eigenvalues, as columns.

@@ -8,7 +8,8 @@ namespace {
 
 int DepthwiseBranch(GraphBuilder& build, const std::string& name, int input, int kernel) {
   const int width = build.node(input).channels;
-  const int depthwise = build.RawConv({.name = name + ".dw", .channels = width, .kernel = kernel, .groups = width}, input);
+  const int depthwise = build.RawConv(
+      {.name = name + ".dw", .channels = width, .kernel = kernel, .groups = width}, input);
   return build.RawConv({.name = name + ".pw", .channels = width, .normalized = true}, depthwise);
 }
 
@@ -26,11 +27,16 @@ int MsfConvLayer(GraphBuilder& build, int input, int channels, const MsfConvShap
   const int conv = build.Conv(name + ".cv1", input, width, 3, 2);
   std::vector<int> branches;
   for (size_t i = 0; i < shape.kernels.size(); ++i) {
-    branches.push_back(DepthwiseBranch(build, name + ".dw" + std::to_string(i), conv, shape.kernels[i]));
+    branches.push_back(
+        DepthwiseBranch(build, name + ".dw" + std::to_string(i), conv, shape.kernels[i]));
   }
-  const int standard =
-      build.RawConv({.name = name + ".std", .channels = width, .kernel = shape.standard_kernel, .normalized = true}, conv);
-  branches.insert(branches.begin() + std::min<long>(1, static_cast<long>(branches.size())), standard);
+  const int standard = build.RawConv({.name = name + ".std",
+                                      .channels = width,
+                                      .kernel = shape.standard_kernel,
+                                      .normalized = true},
+                                     conv);
+  branches.insert(branches.begin() + std::min<long>(1, static_cast<long>(branches.size())),
+                  standard);
   if (build.node(input).channels == width) {
     const int residual = build.AveragePool(input, 2);
     for (int& branch : branches) branch = build.Add(branch, residual);
@@ -76,7 +82,8 @@ Pyramid FpnNeck(GraphBuilder& build, const Pyramid& stages) {
   Pyramid merged = stages;
   for (int i = 1; i >= 0; --i) {
     build.BeginLayer("Lateral");
-    const int brought = build.Conv(build.LayerName(), merged[i + 1], build.node(stages[i]).channels);
+    const int brought =
+        build.Conv(build.LayerName(), merged[i + 1], build.node(stages[i]).channels);
     merged[i] = build.Add(stages[i], build.Upsample(brought));
   }
   for (int& map : merged) map = ConvLayer(build, map, build.node(map).channels, 3, 1);
@@ -85,12 +92,14 @@ Pyramid FpnNeck(GraphBuilder& build, const Pyramid& stages) {
 
 namespace {
 
-// `input` brought to `scale` and `channels`: 1x1 and upsampling, or a chain of stride-2 convolutions.
+// `input` brought to `scale` and `channels`: 1x1 and upsampling, or a chain of stride-2
+// convolutions.
 int Bring(GraphBuilder& build, const std::string& name, int input, int scale, int channels) {
   int x = input;
   for (int step = 0; build.node(x).scale < scale; ++step) {
     const bool last = build.node(x).scale * 2 == scale;
-    x = build.Conv(name + ".down" + std::to_string(step), x, last ? channels : build.node(x).channels, 3, 2);
+    x = build.Conv(name + ".down" + std::to_string(step), x,
+                   last ? channels : build.node(x).channels, 3, 2);
   }
   if (build.node(x).scale > scale) x = build.Conv(name + ".up", x, channels);
   while (build.node(x).scale > scale) x = build.Upsample(x);
@@ -123,7 +132,8 @@ Pyramid ExchangeNeck(GraphBuilder& build, const Pyramid& stages, int units) {
       for (int from = 0; from < 3; ++from) {
         if (from == to) continue;
         const std::string name = build.LayerName() + "." + std::to_string(from);
-        fused[to] = build.Add(fused[to], Bring(build, name, maps[from], target.scale, target.channels));
+        fused[to] =
+            build.Add(fused[to], Bring(build, name, maps[from], target.scale, target.channels));
       }
     }
     maps = fused;

@@ -12,7 +12,9 @@ namespace {
 class DetectorBuilder {
  public:
   explicit DetectorBuilder(const ModelConfig& config)
-      : config_(config), shape_{config.msf_width, config.msf_kernels, config.msf_standard_kernel}, build_(graph_) {
+      : config_(config),
+        shape_{config.msf_width, config.msf_kernels, config.msf_standard_kernel},
+        build_(graph_) {
     graph_.name = config.name;
     graph_.classes = config.classes;
   }
@@ -33,8 +35,10 @@ class DetectorBuilder {
  private:
   // A stand-alone stride-2 convolution, which is what MSFConv replaces.
   int Down(int input, int channels, bool in_backbone) {
-    const bool replaced = config_.msf_placement == "all" || (config_.msf_placement == "backbone" && in_backbone);
-    return replaced ? MsfConvLayer(build_, input, channels, shape_) : ConvLayer(build_, input, channels, 3, 2);
+    const bool replaced =
+        config_.msf_placement == "all" || (config_.msf_placement == "backbone" && in_backbone);
+    return replaced ? MsfConvLayer(build_, input, channels, shape_)
+                    : ConvLayer(build_, input, channels, 3, 2);
   }
 
   Pyramid Backbone(int image) {
@@ -70,10 +74,13 @@ class DetectorBuilder {
     build_.BeginLayer("Detect");
     const std::string name = build_.LayerName();
     const int classes = static_cast<int>(config_.classes.size());
-    const int width = config_.class_width > 0 ? config_.class_width : std::max(64, std::min(classes, 100));
+    const int width =
+        config_.class_width > 0 ? config_.class_width : std::max(64, std::min(classes, 100));
     for (size_t i = 0; i < maps.size(); ++i) {
-      graph_.box_heads.push_back(Head(name + ".cv2." + std::to_string(i), maps[i], 64, 4 * kBoxBins));
-      graph_.class_heads.push_back(Head(name + ".cv3." + std::to_string(i), maps[i], width, classes));
+      graph_.box_heads.push_back(
+          Head(name + ".cv2." + std::to_string(i), maps[i], 64, 4 * kBoxBins));
+      graph_.class_heads.push_back(
+          Head(name + ".cv3." + std::to_string(i), maps[i], width, classes));
     }
   }
 

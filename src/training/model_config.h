@@ -1,5 +1,5 @@
-// The detectors we train, as configurations: YOLOv8n, the same with MSFConv, and the two multi-scale alternatives of the paper's
-// table 4.
+// The detectors we train, as configurations: YOLOv8n, the same with MSFConv, and the two
+// multi-scale alternatives of the paper's table 4.
 #pragma once
 
 #include <string>
@@ -12,37 +12,41 @@ namespace msf {
 
 struct ModelConfig {
   std::string name = "yolov8n";
-  std::string msf_placement = "none";             // none, backbone (layers 0, 1, 3, 5, 7), all (16 and 19 too)
-  double msf_width = 0.5;                         // branch width over output width
-  std::vector<int> msf_kernels = {3, 5};          // kernels of the depthwise branches beside the standard 3x3 one
-  int msf_standard_kernel = 3;                    // kernel of the standard branch
-  std::string neck = "pan";                       // pan (YOLOv8), fpn (a feature pyramid after it), hrnet
-  int class_width = 0;                            // hidden width of the class branch; 0: max(64, min(classes, 100))
+  std::string msf_placement = "none";  // none, backbone (layers 0, 1, 3, 5, 7), all (16 and 19 too)
+  double msf_width = 0.5;              // branch width over output width
+  std::vector<int> msf_kernels = {
+      3, 5};                    // kernels of the depthwise branches beside the standard 3x3 one
+  int msf_standard_kernel = 3;  // kernel of the standard branch
+  std::string neck = "pan";     // pan (YOLOv8), fpn (a feature pyramid after it), hrnet
+  int class_width = 0;          // hidden width of the class branch; 0: max(64, min(classes, 100))
   std::vector<std::string> classes;
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
     visit("name", name, "name of the model");
-    visit("msf_placement", msf_placement, "which stride-2 convolutions become MSFConv: none, backbone or all");
+    visit("msf_placement", msf_placement,
+          "which stride-2 convolutions become MSFConv: none, backbone or all");
     visit("msf_width", msf_width, "branch width of MSFConv as a part of its output width");
     visit("msf_kernels", msf_kernels, "kernel sizes of MSFConv's depthwise branches");
     visit("msf_standard_kernel", msf_standard_kernel, "kernel size of MSFConv's standard branch");
     visit("neck", neck, "how scales are merged: pan (YOLOv8), fpn or hrnet");
-    visit("class_width", class_width, "hidden width of the class branch; 0 follows the number of classes");
+    visit("class_width", class_width,
+          "hidden width of the class branch; 0 follows the number of classes");
     visit("classes", classes, "class names in the order of the class rows");
   }
   Status Check() const;
 };
 
-// The 20 PASCAL VOC classes in their customary (alphabetical) order, and the 80 COCO classes in the order of the COCO weights.
+// The 20 PASCAL VOC classes in their customary (alphabetical) order, and the 80 COCO classes in the
+// order of the COCO weights.
 const std::vector<std::string>& VocClasses();
 const std::vector<std::string>& CocoClasses();
 
 // The COCO name of a VOC class ("sofa" -> "couch"); other names stay as they are.
 std::string CocoNameOf(const std::string& voc_class);
 
-// A built-in configuration (yolov8n, yolov8n_msf, yolov8n_fpn, yolov8n_hrnet with 20 VOC classes; yolov8n_coco with 80), or a YAML
-// file of ModelConfig's options. The error lists the names.
+// A built-in configuration (yolov8n, yolov8n_msf, yolov8n_fpn, yolov8n_hrnet with 20 VOC classes;
+// yolov8n_coco with 80), or a YAML file of ModelConfig's options. The error lists the names.
 StatusOr<ModelConfig> LoadModelConfig(const std::string& name_or_file);
 
 ModelGraph BuildModelGraph(const ModelConfig& config);

@@ -1,9 +1,9 @@
 #include "training/model_config.h"
 
+#include <gtest/gtest.h>
+
 #include <filesystem>
 #include <fstream>
-
-#include <gtest/gtest.h>
 
 namespace msf {
 namespace {
@@ -23,16 +23,21 @@ int CountLayers(const ModelGraph& graph, const std::string& type) {
 // Table 3 of the paper: 3.01 M / 8.1 GFLOPs and 3.19 M / 8.9 GFLOPs at 640x640 with 20 classes.
 TEST(ModelConfigTest, SizesAgreeWithThePaper) {
   const ModelGraph plain = Build("yolov8n");
-  EXPECT_EQ(CountParameters(plain), 3009532);  // 3,009,548 with the 16 constants that some implementations keep for the DFL bins
+  EXPECT_EQ(
+      CountParameters(plain),
+      3009532);  // 3,009,548 with the 16 constants that some implementations keep for the DFL bins
   EXPECT_NEAR(CountFlops(plain, 640, 640) * 1e-9, 8.1, 0.01 * 8.1);
   const ModelGraph msf = Build("yolov8n_msf");
   EXPECT_EQ(CountParameters(msf), 3194844);
   EXPECT_NEAR(CountFlops(msf, 640, 640) * 1e-9, 8.9, 0.01 * 8.9);
 }
 
-TEST(ModelConfigTest, CocoHeadHasItsKnownSize) { EXPECT_EQ(CountParameters(Build("yolov8n_coco")), 3151888); }
+TEST(ModelConfigTest, CocoHeadHasItsKnownSize) {
+  EXPECT_EQ(CountParameters(Build("yolov8n_coco")), 3151888);
+}
 
-// Table 4: 3.85 M / 10.2 GFLOPs and 10.2 M / 12.5 GFLOPs; the paper does not say how they are built, so they come near only.
+// Table 4: 3.85 M / 10.2 GFLOPs and 10.2 M / 12.5 GFLOPs; the paper does not say how they are
+// built, so they come near only.
 TEST(ModelConfigTest, MultiScaleVariantsComeNearThePaper) {
   const ModelGraph fpn = Build("yolov8n_fpn");
   EXPECT_NEAR(CountParameters(fpn) * 1e-6, 3.85, 0.1 * 3.85);

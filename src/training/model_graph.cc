@@ -80,13 +80,18 @@ int GraphBuilder::RawConv(GraphNode conv, int input) {
 
 int GraphBuilder::Norm(const std::string& name, int input) {
   GraphNode norm = node(input);
-  norm = GraphNode{.op = GraphOp::kNorm, .name = name, .inputs = {input}, .channels = norm.channels, .scale = norm.scale};
+  norm = GraphNode{.op = GraphOp::kNorm,
+                   .name = name,
+                   .inputs = {input},
+                   .channels = norm.channels,
+                   .scale = norm.scale};
   norm.activated = true;
   return Append(std::move(norm));
 }
 
 int GraphBuilder::MaxPool(int input, int kernel, int stride) {
-  GraphNode pool{.op = GraphOp::kMaxPool, .name = "", .inputs = {input}, .channels = node(input).channels};
+  GraphNode pool{
+      .op = GraphOp::kMaxPool, .name = "", .inputs = {input}, .channels = node(input).channels};
   pool.scale = node(input).scale * stride;
   pool.kernel = kernel;
   pool.stride = stride;
@@ -94,7 +99,8 @@ int GraphBuilder::MaxPool(int input, int kernel, int stride) {
 }
 
 int GraphBuilder::AveragePool(int input, int kernel) {
-  GraphNode pool{.op = GraphOp::kAveragePool, .name = "", .inputs = {input}, .channels = node(input).channels};
+  GraphNode pool{
+      .op = GraphOp::kAveragePool, .name = "", .inputs = {input}, .channels = node(input).channels};
   pool.scale = node(input).scale * kernel;
   pool.kernel = kernel;
   pool.stride = kernel;
@@ -116,16 +122,29 @@ int GraphBuilder::Concat(const std::vector<int>& inputs) {
     MSF_CHECK(node(input).scale == node(inputs[0]).scale, "concatenated maps need one size");
     channels += node(input).channels;
   }
-  return Append({.op = GraphOp::kConcat, .name = "", .inputs = inputs, .channels = channels, .scale = node(inputs[0]).scale});
+  return Append({.op = GraphOp::kConcat,
+                 .name = "",
+                 .inputs = inputs,
+                 .channels = channels,
+                 .scale = node(inputs[0]).scale});
 }
 
 int GraphBuilder::Add(int a, int b) {
-  MSF_CHECK(node(a).channels == node(b).channels && node(a).scale == node(b).scale, "added maps need one shape");
-  return Append({.op = GraphOp::kAdd, .name = "", .inputs = {a, b}, .channels = node(a).channels, .scale = node(a).scale});
+  MSF_CHECK(node(a).channels == node(b).channels && node(a).scale == node(b).scale,
+            "added maps need one shape");
+  return Append({.op = GraphOp::kAdd,
+                 .name = "",
+                 .inputs = {a, b},
+                 .channels = node(a).channels,
+                 .scale = node(a).scale});
 }
 
 int GraphBuilder::Slice(int input, int begin, int channels) {
-  GraphNode slice{.op = GraphOp::kSlice, .name = "", .inputs = {input}, .channels = channels, .scale = node(input).scale};
+  GraphNode slice{.op = GraphOp::kSlice,
+                  .name = "",
+                  .inputs = {input},
+                  .channels = channels,
+                  .scale = node(input).scale};
   slice.slice_begin = begin;
   return Append(std::move(slice));
 }

@@ -1,5 +1,5 @@
-// A detector as a plain list of primitive operations: what libtorch trains, what is counted, and what is exported, from one
-// description that depends on none of them.
+// A detector as a plain list of primitive operations: what libtorch trains, what is counted, and
+// what is exported, from one description that depends on none of them.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,20 @@
 
 namespace msf {
 
-enum class GraphOp { kInput, kConv, kNorm, kMaxPool, kAveragePool, kUpsample, kConcat, kAdd, kSlice };
+enum class GraphOp {
+  kInput,
+  kConv,
+  kNorm,
+  kMaxPool,
+  kAveragePool,
+  kUpsample,
+  kConcat,
+  kAdd,
+  kSlice
+};
 
-// One operation. Its inputs are earlier nodes; its output has `channels` channels and 1/`scale` of the image's width and height.
+// One operation. Its inputs are earlier nodes; its output has `channels` channels and 1/`scale` of
+// the image's width and height.
 struct GraphNode {
   GraphOp op = GraphOp::kInput;
   std::string name = {};  // prefix of its tensors, e.g. "model.2.cv1"; empty when it has none
@@ -38,7 +49,8 @@ struct ModelGraph {
   std::vector<std::string> classes;
   std::vector<GraphNode> nodes;
   std::vector<GraphLayer> layers;
-  // The outputs, one per scale: DFL logits of the four box sides [1, 4 * kBoxBins, h, w], class logits [1, classes, h, w].
+  // The outputs, one per scale: DFL logits of the four box sides [1, 4 * kBoxBins, h, w], class
+  // logits [1, classes, h, w].
   std::vector<int> box_heads;
   std::vector<int> class_heads;
 
@@ -49,13 +61,15 @@ struct ModelGraph {
 // Bins per box side in the distribution focal loss.
 inline constexpr int kBoxBins = 16;
 
-// Learnable parameters of one node or a whole graph, as the usual tools count a fused model: the batch norm of a plain
-// convolution block counts as one bias per channel. Norms of MSFConv's branches and of its concatenation count in full.
+// Learnable parameters of one node or a whole graph, as the usual tools count a fused model: the
+// batch norm of a plain convolution block counts as one bias per channel. Norms of MSFConv's
+// branches and of its concatenation count in full.
 int64_t CountParameters(const ModelGraph& graph, const GraphNode& node);
 int64_t CountParameters(const ModelGraph& graph);
 
-// Floating-point operations for an image of `width` x `height` pixels: 2 per multiply-add of a convolution and per element of a norm that
-// CountParameters counts in full, sums and averages as they are; activations, maxima and copies are free.
+// Floating-point operations for an image of `width` x `height` pixels: 2 per multiply-add of a
+// convolution and per element of a norm that CountParameters counts in full, sums and averages as
+// they are; activations, maxima and copies are free.
 int64_t CountFlops(const ModelGraph& graph, const GraphNode& node, int width, int height);
 int64_t CountFlops(const ModelGraph& graph, int width, int height);
 

@@ -1,10 +1,10 @@
 #include "training/msf_initialization.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <torch/types.h>
 #include <torch/utils.h>
+
+#include <algorithm>
+#include <cmath>
 
 #include "training/least_squares.h"
 
@@ -21,9 +21,12 @@ constexpr int64_t kSamples = 20000;
 class BlockInitializer {
  public:
   BlockInitializer(Network& student, const Network& teacher, int layer)
-      : graph_(student.graph()), tensors_(AllTensors(student)), name_("model." + std::to_string(layer)) {
+      : graph_(student.graph()),
+        tensors_(AllTensors(student)),
+        name_("model." + std::to_string(layer)) {
     const NamedTensors all = AllTensors(teacher);
-    const torch::Tensor scale = all.at(name_ + ".bn.weight") / (all.at(name_ + ".bn.running_var") + kNormEpsilon).sqrt();
+    const torch::Tensor scale =
+        all.at(name_ + ".bn.weight") / (all.at(name_ + ".bn.running_var") + kNormEpsilon).sqrt();
     teacher_weight_ = all.at(name_ + ".conv.weight") * scale.view({-1, 1, 1, 1});
     teacher_bias_ = all.at(name_ + ".bn.bias") - all.at(name_ + ".bn.running_mean") * scale;
     for (int i = graph_.layers[layer].begin; i < graph_.layers[layer].end; ++i) {
@@ -33,10 +36,12 @@ class BlockInitializer {
       if (node.name == name_ + ".std" || node.name.ends_with(".pw")) branches_.push_back(&node);
     }
     // In the order of the concatenation, where the standard branch, made last, is the second.
-    if (branches_.size() > 2) std::rotate(branches_.begin() + 1, branches_.end() - 1, branches_.end());
+    if (branches_.size() > 2)
+      std::rotate(branches_.begin() + 1, branches_.end() - 1, branches_.end());
   }
 
-  // `x`: what the student's block gets; `teacher_x`: what the teacher's convolution gets. Returns the relative error.
+  // `x`: what the student's block gets; `teacher_x`: what the teacher's convolution gets. Returns
+  // the relative error.
   double Initialize(const torch::Tensor& x, const torch::Tensor& teacher_x) {
     wanted_ = at::conv2d(teacher_x, teacher_weight_, teacher_bias_, 2, 1);
     const torch::Tensor code = InitializeStem(x);
@@ -64,7 +69,8 @@ class BlockInitializer {
   }
 
   // A norm whose running statistics are those of `map` and whose effect is map * gain + shift.
-  void AssignNorm(const std::string& prefix, const torch::Tensor& map, const torch::Tensor& gain, const torch::Tensor& shift) {
+  void AssignNorm(const std::string& prefix, const torch::Tensor& map, const torch::Tensor& gain,
+                  const torch::Tensor& shift) {
     const torch::Tensor mean = map.mean({0, 2, 3}), variance = map.var({0, 2, 3}, false);
     Assign(prefix + ".running_mean", mean);
     Assign(prefix + ".running_var", variance);
@@ -103,7 +109,8 @@ class BlockInitializer {
   // The standard branch, which sees most, first.
   std::vector<const GraphNode*> OrderedBranches() const {
     std::vector<const GraphNode*> ordered = branches_;
-    std::stable_partition(ordered.begin(), ordered.end(), [](const GraphNode* node) { return node->name.ends_with(".std"); });
+    std::stable_partition(ordered.begin(), ordered.end(),
+                          [](const GraphNode* node) { return node->name.ends_with(".std"); });
     return ordered;
   }
 
@@ -117,8 +124,9 @@ class BlockInitializer {
   }
 
   // The branch restores the channels order[next], ...; once all are taken, their negatives.
-  void InitializeBranch(const GraphNode& branch, const torch::Tensor& code, const torch::Tensor& order, int64_t next,
-                        std::vector<torch::Tensor>& sums, std::vector<torch::Tensor>& loudness) {
+  void InitializeBranch(const GraphNode& branch, const torch::Tensor& code,
+                        const torch::Tensor& order, int64_t next, std::vector<torch::Tensor>& sums,
+                        std::vector<torch::Tensor>& loudness) {
     const int64_t channels = wanted_.size(1);
     const torch::Tensor turn = torch::arange(next, next + branch.channels);
     const torch::Tensor chosen = order.index_select(0, turn.remainder(channels));
@@ -126,19 +134,27 @@ class BlockInitializer {
     torch::Tensor target = wanted_.index_select(1, chosen) * sign.view({1, -1, 1, 1});
     torch::Tensor gain = torch::ones({branch.channels});
     if (residual_.defined()) {
-      gain = (kResidualPart * residual_.std({0, 2, 3}, false, false) / target.std({0, 2, 3}, false, false)).clamp(1.0, 100.0);
+      gain = (kResidualPart * residual_.std({0, 2, 3}, false, false) /
+              target.std({0, 2, 3}, false, false))
+                 .clamp(1.0, 100.0);
       target = target * gain.view({1, -1, 1, 1}) - residual_;
     }
     const int kernel = branch.kernel;
-    const torch::Tensor columns = at::im2col(code, {kernel, kernel}, {1, 1}, {kernel / 2, kernel / 2}, {1, 1});
-    const torch::Tensor unfolded = columns.view({code.size(0), columns.size(1), code.size(2), code.size(3)});
+    const torch::Tensor columns =
+        at::im2col(code, {kernel, kernel}, {1, 1}, {kernel / 2, kernel / 2}, {1, 1});
+    const torch::Tensor unfolded =
+        columns.view({code.size(0), columns.size(1), code.size(2), code.size(3)});
     const torch::Tensor rows = PixelRows(unfolded, kSamples);
     const torch::Tensor features = torch::cat({rows, torch::ones({rows.size(0), 1})}, 1);
     const torch::Tensor solution = SolveLeastSquares(features, PixelRows(target, kSamples));
-    const torch::Tensor weight = solution.narrow(0, 0, rows.size(1)).t().contiguous().view({branch.channels, -1, kernel, kernel});
+    const torch::Tensor weight = solution.narrow(0, 0, rows.size(1))
+                                     .t()
+                                     .contiguous()
+                                     .view({branch.channels, -1, kernel, kernel});
     const torch::Tensor shift = solution[rows.size(1)];
     Assign(branch.name + ".conv.weight", weight);
-    if (branch.name.ends_with(".pw")) PassThrough(branch.name.substr(0, branch.name.size() - 3) + ".dw.weight");
+    if (branch.name.ends_with(".pw"))
+      PassThrough(branch.name.substr(0, branch.name.size() - 3) + ".dw.weight");
     const torch::Tensor output = at::conv2d(code, weight, {}, 1, kernel / 2);
     AssignNorm(branch.name + ".bn", output, torch::ones({branch.channels}), shift);
     torch::Tensor sum = output + shift.view({1, -1, 1, 1});
@@ -154,15 +170,18 @@ class BlockInitializer {
     weight.select(2, weight.size(2) / 2).select(2, weight.size(3) / 2).fill_(1.0);
   }
 
-  double InitializeOutput(const std::vector<torch::Tensor>& sums, const std::vector<torch::Tensor>& loudness) {
+  double InitializeOutput(const std::vector<torch::Tensor>& sums,
+                          const std::vector<torch::Tensor>& loudness) {
     const torch::Tensor joined = torch::cat(sums, 1);
     const torch::Tensor gain = 1.0 / torch::cat(loudness, 0);
     AssignNorm(name_ + ".norm", joined, gain, torch::zeros_like(gain));
     const torch::Tensor activated = at::silu(joined * gain.view({1, -1, 1, 1}));
-    const torch::Tensor features = PixelRows(activated, kSamples), targets = PixelRows(at::silu(wanted_), kSamples);
+    const torch::Tensor features = PixelRows(activated, kSamples),
+                        targets = PixelRows(at::silu(wanted_), kSamples);
     const torch::Tensor solution = SolveLeastSquares(features, targets);
     Assign(name_ + ".cv2.weight", solution.t().contiguous());
-    const torch::Tensor error = (features.mm(solution) - targets).square().mean(0) / (targets.var(0) + 1e-3);
+    const torch::Tensor error =
+        (features.mm(solution) - targets).square().mean(0) / (targets.var(0) + 1e-3);
     return error.mean().item<double>();
   }
 
@@ -179,7 +198,8 @@ class BlockInitializer {
 
 }  // namespace
 
-std::vector<double> InitializeMsfLayers(Network& student, const Network& teacher, const torch::Tensor& images) {
+std::vector<double> InitializeMsfLayers(Network& student, const Network& teacher,
+                                        const torch::Tensor& images) {
   const torch::NoGradGuard no_grad;
   student.set_training(false);
   const ModelGraph& own = student.graph();
@@ -192,8 +212,10 @@ std::vector<double> InitializeMsfLayers(Network& student, const Network& teacher
     const GraphLayer& nodes = own.layers[layer];
     const int begin = std::max(1, nodes.begin);
     if (nodes.type == "MSFConv") {
-      const torch::Tensor& teacher_x = teacher_values[other.nodes[std::max(1, other.layers[layer].begin)].inputs[0]];
-      errors.push_back(BlockInitializer(student, teacher, layer).Initialize(values[own.nodes[begin].inputs[0]], teacher_x));
+      const torch::Tensor& teacher_x =
+          teacher_values[other.nodes[std::max(1, other.layers[layer].begin)].inputs[0]];
+      errors.push_back(BlockInitializer(student, teacher, layer)
+                           .Initialize(values[own.nodes[begin].inputs[0]], teacher_x));
     }
     student.RunNodes(begin, nodes.end, values);
   }

@@ -5,15 +5,19 @@
 
 namespace msf {
 
-// Gives every MSFConv layer of `student` weights with which it reproduces the teacher's convolution in its place as well as linear algebra
-// can say, from the pictures `images` [batch, 3, h, w]:
-//  - the stride-2 convolution computes the principal components of the teacher's pre-activations (weighted by how much each
+// Gives every MSFConv layer of `student` weights with which it reproduces the teacher's convolution
+// in its place as well as linear algebra can say, from the pictures `images` [batch, 3, h, w]:
+//  - the stride-2 convolution computes the principal components of the teacher's pre-activations
+//  (weighted by how much each
 //    matters after SiLU), shifted to where SiLU is nearly linear;
-//  - each branch restores its share of the pre-activations from them by least squares, the residual taken into account;
+//  - each branch restores its share of the pre-activations from them by least squares, the residual
+//  taken into account;
 //  - the last 1x1 is the least-squares map from the activated branches to the teacher's output.
-// Layers are treated one after the other, each on what the student itself computes before it, so that later ones make up for
-// earlier errors. Both networks' layers correspond one to one; the student's other layers hold the teacher's weights.
-// Returns the relative squared error of each MSFConv layer's output (1: as bad as the mean).
-std::vector<double> InitializeMsfLayers(Network& student, const Network& teacher, const torch::Tensor& images);
+// Layers are treated one after the other, each on what the student itself computes before it, so
+// that later ones make up for earlier errors. Both networks' layers correspond one to one; the
+// student's other layers hold the teacher's weights. Returns the relative squared error of each
+// MSFConv layer's output (1: as bad as the mean).
+std::vector<double> InitializeMsfLayers(Network& student, const Network& teacher,
+                                        const torch::Tensor& images);
 
 }  // namespace msf

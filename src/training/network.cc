@@ -1,9 +1,9 @@
 #include "training/network.h"
 
-#include <cmath>
-
 #include <torch/types.h>
 #include <torch/utils.h>
+
+#include <cmath>
 
 #include "training/fast_silu.h"
 #include "util/check.h"
@@ -17,9 +17,13 @@ constexpr double kNormMomentum = 0.03;
 
 }  // namespace
 
-std::string ConvPrefix(const GraphNode& node) { return node.normalized ? node.name + ".conv" : node.name; }
+std::string ConvPrefix(const GraphNode& node) {
+  return node.normalized ? node.name + ".conv" : node.name;
+}
 
-std::string NormPrefix(const GraphNode& node) { return node.op == GraphOp::kNorm ? node.name : node.name + ".bn"; }
+std::string NormPrefix(const GraphNode& node) {
+  return node.op == GraphOp::kNorm ? node.name : node.name + ".bn";
+}
 
 Network::Network(ModelGraph graph, uint64_t seed) : graph_(std::move(graph)) {
   torch::manual_seed(seed);
@@ -39,10 +43,12 @@ void Network::CreateTensors(const GraphNode& node) {
   if (node.op != GraphOp::kConv) return;
   const int in = graph_.nodes[node.inputs[0]].channels / node.groups;
   const double bound = 1.0 / std::sqrt(static_cast<double>(in) * node.kernel * node.kernel);
-  torch::Tensor weight = torch::empty({node.channels, in, node.kernel, node.kernel}).uniform_(-bound, bound);
+  torch::Tensor weight =
+      torch::empty({node.channels, in, node.kernel, node.kernel}).uniform_(-bound, bound);
   weight = weight.contiguous(torch::MemoryFormat::ChannelsLast);
   parameters_[ConvPrefix(node) + ".weight"] = weight.requires_grad_(true);
-  if (node.bias) parameters_[ConvPrefix(node) + ".bias"] = torch::zeros({node.channels}).requires_grad_(true);
+  if (node.bias)
+    parameters_[ConvPrefix(node) + ".bias"] = torch::zeros({node.channels}).requires_grad_(true);
   if (node.normalized) CreateNorm(NormPrefix(node), node.channels);
 }
 
@@ -55,8 +61,8 @@ void Network::CreateNorm(const std::string& prefix, int channels) {
 
 torch::Tensor Network::RunNorm(const std::string& prefix, const torch::Tensor& x) const {
   return at::batch_norm(x, parameters_.at(prefix + ".weight"), parameters_.at(prefix + ".bias"),
-                        buffers_.at(prefix + ".running_mean"), buffers_.at(prefix + ".running_var"), training_, kNormMomentum,
-                        kNormEpsilon, false);
+                        buffers_.at(prefix + ".running_mean"), buffers_.at(prefix + ".running_var"),
+                        training_, kNormMomentum, kNormEpsilon, false);
 }
 
 torch::Tensor Network::RunConv(const GraphNode& node, const torch::Tensor& x) const {
@@ -65,14 +71,19 @@ torch::Tensor Network::RunConv(const GraphNode& node, const torch::Tensor& x) co
   const int padding = node.kernel / 2;
   if (!node.normalized) return at::conv2d(x, weight, bias, node.stride, padding, 1, node.groups);
   const std::string norm = NormPrefix(node);
-  if (training_) return RunNorm(norm, at::conv2d(x, weight, bias, node.stride, padding, 1, node.groups));
-  // With fixed statistics the norm is a part of the convolution: far less memory traffic, also for the gradients.
-  const torch::Tensor scale = parameters_.at(norm + ".weight") / (buffers_.at(norm + ".running_var") + kNormEpsilon).sqrt();
+  if (training_)
+    return RunNorm(norm, at::conv2d(x, weight, bias, node.stride, padding, 1, node.groups));
+  // With fixed statistics the norm is a part of the convolution: far less memory traffic, also for
+  // the gradients.
+  const torch::Tensor scale =
+      parameters_.at(norm + ".weight") / (buffers_.at(norm + ".running_var") + kNormEpsilon).sqrt();
   bias = parameters_.at(norm + ".bias") - buffers_.at(norm + ".running_mean") * scale;
-  return at::conv2d(x, weight * scale.view({-1, 1, 1, 1}), bias, node.stride, padding, 1, node.groups);
+  return at::conv2d(x, weight * scale.view({-1, 1, 1, 1}), bias, node.stride, padding, 1,
+                    node.groups);
 }
 
-torch::Tensor Network::RunNode(const GraphNode& node, const std::vector<torch::Tensor>& values) const {
+torch::Tensor Network::RunNode(const GraphNode& node,
+                               const std::vector<torch::Tensor>& values) const {
   const torch::Tensor& x = values[node.inputs[0]];
   switch (node.op) {
     case GraphOp::kConv: {
@@ -132,8 +143,9 @@ NamedTensors Network::State() const {
 Status Network::Load(const NamedTensors& state) {
   const std::vector<std::string> missing = LoadMatching(state);
   if (missing.empty()) return Status::Ok();
-  return Status::Error("the weights do not fit model " + graph_.name + ": " + std::to_string(missing.size()) +
-                       " tensors are missing or have another shape, the first is " + missing.front());
+  return Status::Error(
+      "the weights do not fit model " + graph_.name + ": " + std::to_string(missing.size()) +
+      " tensors are missing or have another shape, the first is " + missing.front());
 }
 
 std::vector<std::string> Network::LoadMatching(const NamedTensors& state) {

@@ -1,12 +1,12 @@
 // A ModelGraph with weights, run by libtorch.
 #pragma once
 
+#include <torch/types.h>
+
 #include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
-
-#include <torch/types.h>
 
 #include "training/model_graph.h"
 #include "util/status.h"
@@ -27,11 +27,13 @@ class Network {
   Network(ModelGraph graph, uint64_t seed);
 
   const ModelGraph& graph() const { return graph_; }
-  // Trained tensors and the running statistics of batch norms, by name ("model.0.conv.weight", "model.0.bn.running_mean", ...).
+  // Trained tensors and the running statistics of batch norms, by name ("model.0.conv.weight",
+  // "model.0.bn.running_mean", ...).
   const NamedTensors& parameters() const { return parameters_; }
   const NamedTensors& buffers() const { return buffers_; }
 
-  // Whether batch norms use the batch's statistics (and update the running ones) or the running ones.
+  // Whether batch norms use the batch's statistics (and update the running ones) or the running
+  // ones.
   void set_training(bool training) { training_ = training; }
 
   // `images`: [batch, 3, h, w], RGB in [0, 1], h and w multiples of 32.
@@ -42,11 +44,13 @@ class Network {
 
   HeadOutputs HeadsOf(const std::vector<torch::Tensor>& values) const;
 
-  // Copies of all parameters and buffers, and the way back: every tensor must be there with its shape.
+  // Copies of all parameters and buffers, and the way back: every tensor must be there with its
+  // shape.
   NamedTensors State() const;
   Status Load(const NamedTensors& state);
 
-  // The tensors for which names and shapes agree are taken; returns the names of those that were not found.
+  // The tensors for which names and shapes agree are taken; returns the names of those that were
+  // not found.
   std::vector<std::string> LoadMatching(const NamedTensors& state);
 
  private:
@@ -62,7 +66,8 @@ class Network {
   bool training_ = false;
 };
 
-// Prefixes of a convolution's weight and of its batch norm: "model.0.conv", "model.0.bn"; a bare convolution is just its name.
+// Prefixes of a convolution's weight and of its batch norm: "model.0.conv", "model.0.bn"; a bare
+// convolution is just its name.
 std::string ConvPrefix(const GraphNode& node);
 std::string NormPrefix(const GraphNode& node);
 

@@ -37,7 +37,8 @@ TEST(FastSiluTest, AgreesWithLibtorch) {
   for (const auto type : {torch::kFloat, torch::kBFloat16}) {
     for (const auto format : {torch::MemoryFormat::Contiguous, torch::MemoryFormat::ChannelsLast}) {
       const torch::Tensor x = (torch::randn({2, 5, 3, 7}) * 6.0).to(type).contiguous(format);
-      const torch::Tensor weight = torch::randn({2, 5, 3, 7}).to(type);  // its gradient arrives in another memory order
+      const torch::Tensor weight =
+          torch::randn({2, 5, 3, 7}).to(type);  // its gradient arrives in another memory order
       torch::Tensor a = x.clone().requires_grad_(true), b = x.clone().requires_grad_(true);
       const torch::Tensor ours = FastSilu(a), theirs = at::silu(b);
       (ours * weight).sum().backward();
@@ -52,7 +53,8 @@ TEST(FastSiluTest, AgreesWithLibtorch) {
 }
 
 TEST(FastSiluTest, SlicesWithGapsWork) {
-  torch::Tensor x = torch::randn({2, 6, 4, 4}).contiguous(torch::MemoryFormat::ChannelsLast).requires_grad_(true);
+  torch::Tensor x =
+      torch::randn({2, 6, 4, 4}).contiguous(torch::MemoryFormat::ChannelsLast).requires_grad_(true);
   FastSilu(x.narrow(1, 2, 3)).sum().backward();
   EXPECT_EQ(x.grad().narrow(1, 0, 2).abs().sum().item<float>(), 0.0F);
   EXPECT_GT(x.grad().narrow(1, 2, 3).abs().sum().item<float>(), 0.0F);
@@ -65,8 +67,10 @@ TEST(NetworkTest, HeadsHaveTheirShapes) {
     const HeadOutputs heads = network.Forward(torch::rand({1, 3, 64, 96}));
     for (int i = 0; i < 3; ++i) {
       const int64_t stride = 8LL << i;
-      EXPECT_EQ(heads.boxes[i].sizes(), (std::vector<int64_t>{1, 64, 64 / stride, 96 / stride})) << name;
-      EXPECT_EQ(heads.classes[i].sizes(), (std::vector<int64_t>{1, 20, 64 / stride, 96 / stride})) << name;
+      EXPECT_EQ(heads.boxes[i].sizes(), (std::vector<int64_t>{1, 64, 64 / stride, 96 / stride}))
+          << name;
+      EXPECT_EQ(heads.classes[i].sizes(), (std::vector<int64_t>{1, 20, 64 / stride, 96 / stride}))
+          << name;
     }
   }
 }
@@ -90,7 +94,8 @@ TEST(NetworkTest, FoldedNormsGiveWhatSeparateOnesGive) {
     values[0] = x;
     network.RunNodes(1, 2, values);
   }
-  std::vector<torch::Tensor> batch(network.graph().nodes.size()), running(network.graph().nodes.size());
+  std::vector<torch::Tensor> batch(network.graph().nodes.size()),
+      running(network.graph().nodes.size());
   batch[0] = running[0] = x;
   network.RunNodes(1, 2, batch);
   network.set_training(false);
@@ -124,7 +129,8 @@ TEST(WeightAdaptationTest, RowsFollowClassNames) {
   ASSERT_TRUE(adapted.ok()) << adapted.message();
   const std::string name = "model.22.cv3.0.2.";
   // person is row 14 of VOC and 0 of COCO, sofa 17 and 57 (couch).
-  const torch::Tensor voc = adapted->at(name + "bias"), source = coco.parameters().at(name + "bias");
+  const torch::Tensor voc = adapted->at(name + "bias"),
+                      source = coco.parameters().at(name + "bias");
   EXPECT_EQ(voc.size(0), 20);
   EXPECT_EQ(voc[14].item<float>(), source[0].item<float>());
   EXPECT_EQ(voc[17].item<float>(), source[57].item<float>());
@@ -135,7 +141,8 @@ TEST(WeightAdaptationTest, RowsFollowClassNames) {
 
 TEST(WeightAdaptationTest, WrongClassCountIsAnError) {
   const Network two(BuildModelGraph(SmallConfig("none")), 0);
-  const StatusOr<NamedTensors> adapted = AdaptWeights(two.State(), BuildModelGraph(*LoadModelConfig("yolov8n")));
+  const StatusOr<NamedTensors> adapted =
+      AdaptWeights(two.State(), BuildModelGraph(*LoadModelConfig("yolov8n")));
   ASSERT_FALSE(adapted.ok());
   EXPECT_NE(adapted.message().find("2 classes"), std::string::npos) << adapted.message();
 }
@@ -144,19 +151,22 @@ TEST(LeastSquaresTest, FindsTheMapThatMadeTheData) {
   torch::manual_seed(2);
   const torch::Tensor features = torch::randn({200, 6}), map = torch::randn({6, 3});
   EXPECT_TRUE(torch::allclose(SolveLeastSquares(features, features.mm(map)), map, 1e-2, 1e-2));
-  const torch::Tensor vectors = LeadingEigenvectors(torch::diag(torch::tensor({1.0F, 5.0F, 3.0F})), 2);
+  const torch::Tensor vectors =
+      LeadingEigenvectors(torch::diag(torch::tensor({1.0F, 5.0F, 3.0F})), 2);
   EXPECT_NEAR(vectors[1].abs().max().item<float>(), 1.0F, 1e-5);
   EXPECT_NEAR(vectors[0].abs().max().item<float>(), 0.0F, 1e-5);
 }
 
-// The closed form and the layer-wise distillation must speak of the same blocks in the same order: the error that the one computes is
-// the error that the other measures.
+// The closed form and the layer-wise distillation must speak of the same blocks in the same order:
+// the error that the one computes is the error that the other measures.
 TEST(MsfInitializationTest, BlocksReproduceTheTeacher) {
-  Network teacher(BuildModelGraph(SmallConfig("none")), 0), student(BuildModelGraph(SmallConfig("all")), 1);
+  Network teacher(BuildModelGraph(SmallConfig("none")), 0),
+      student(BuildModelGraph(SmallConfig("all")), 1);
   Enliven(teacher);
   const std::vector<std::string> missing = student.LoadMatching(teacher.State());
   torch::manual_seed(4);
-  const torch::Tensor images = at::upsample_bilinear2d(torch::rand({6, 3, 16, 16}), {128, 128}, false);
+  const torch::Tensor images =
+      at::upsample_bilinear2d(torch::rand({6, 3, 16, 16}), {128, 128}, false);
   const LayerDistillation distillation(student, teacher, missing);
   ASSERT_EQ(distillation.layers(), (std::vector<int>{0, 1, 3, 5, 7, 16, 19}));
   const double before = distillation.Errors(images, false)[0];

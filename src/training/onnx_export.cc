@@ -17,7 +17,8 @@ constexpr int64_t kIrVersion = 7;
 // Writes the nodes of a ModelGraph; knows the ONNX name of each node's value.
 class GraphExporter {
  public:
-  GraphExporter(const ModelGraph& model, const NamedTensors& state, const OnnxOptions& options, onnx::GraphProto& proto)
+  GraphExporter(const ModelGraph& model, const NamedTensors& state, const OnnxOptions& options,
+                onnx::GraphProto& proto)
       : model_(model), state_(state), options_(options), onnx_(proto) {
     proto.set_name(model.name);
   }
@@ -27,7 +28,8 @@ class GraphExporter {
     const std::string height = raw ? "height" : std::to_string(options_.height);
     const std::string width = raw ? "width" : std::to_string(options_.width);
     onnx_.Input("images", {"1", "3", height, width});
-    for (size_t i = 0; i < model_.nodes.size(); ++i) values_.push_back(ExportNode(static_cast<int>(i)));
+    for (size_t i = 0; i < model_.nodes.size(); ++i)
+      values_.push_back(ExportNode(static_cast<int>(i)));
     if (raw) {
       DeclareHeads();
     } else {
@@ -97,11 +99,13 @@ class GraphExporter {
     torch::Tensor bias = node.bias ? Tensor(ConvPrefix(node) + ".bias") : torch::Tensor();
     if (node.normalized) {
       const std::string norm = NormPrefix(node);
-      const torch::Tensor scale = Tensor(norm + ".weight") / (Tensor(norm + ".running_var") + kNormEpsilon).sqrt();
+      const torch::Tensor scale =
+          Tensor(norm + ".weight") / (Tensor(norm + ".running_var") + kNormEpsilon).sqrt();
       weight = weight * scale.view({-1, 1, 1, 1});
       bias = Tensor(norm + ".bias") - Tensor(norm + ".running_mean") * scale;
     }
-    std::vector<std::string> inputs = {input, onnx_.Constant(node.name + ".weight", weight, options_.half)};
+    std::vector<std::string> inputs = {
+        input, onnx_.Constant(node.name + ".weight", weight, options_.half)};
     if (bias.defined()) inputs.push_back(onnx_.Constant(node.name + ".bias", bias));
     onnx::NodeProto& conv = onnx_.Node("Conv", inputs, output);
     SetWindow(conv, node, node.kernel / 2);
@@ -119,7 +123,8 @@ class GraphExporter {
 
   void ExportPool(const GraphNode& node, const std::string& input, const std::string& output) {
     const bool max = node.op == GraphOp::kMaxPool;
-    SetWindow(onnx_.Node(max ? "MaxPool" : "AveragePool", {input}, output), node, max ? node.kernel / 2 : 0);
+    SetWindow(onnx_.Node(max ? "MaxPool" : "AveragePool", {input}, output), node,
+              max ? node.kernel / 2 : 0);
   }
 
   static void SetWindow(onnx::NodeProto& proto, const GraphNode& node, int64_t padding) {
@@ -129,7 +134,8 @@ class GraphExporter {
   }
 
   void ExportUpsample(const std::string& input, const std::string& output) {
-    const std::string scales = onnx_.Constant(output + "_scales", torch::tensor({1.0F, 1.0F, 2.0F, 2.0F}));
+    const std::string scales =
+        onnx_.Constant(output + "_scales", torch::tensor({1.0F, 1.0F, 2.0F, 2.0F}));
     onnx::NodeProto& resize = onnx_.Node("Resize", {input, "", scales}, output);
     OnnxGraph::Set(resize, "mode", std::string("nearest"));
     OnnxGraph::Set(resize, "coordinate_transformation_mode", std::string("asymmetric"));
@@ -141,7 +147,8 @@ class GraphExporter {
       for (int head : {model_.box_heads[i], model_.class_heads[i]}) {
         const GraphNode& node = model_.nodes[head];
         const std::string scale = std::to_string(node.scale);
-        onnx_.Output(HeadName(head), {"1", std::to_string(node.channels), "height_" + scale, "width_" + scale});
+        onnx_.Output(HeadName(head),
+                     {"1", std::to_string(node.channels), "height_" + scale, "width_" + scale});
       }
     }
   }
@@ -153,7 +160,8 @@ class GraphExporter {
       const int scale = model_.nodes[head].scale;
       const int64_t rows = options_.height / scale, columns = options_.width / scale;
       const torch::Tensor index = at::arange(rows * columns, at::kLong);
-      anchors.push_back(at::stack({index.remainder(columns).to(at::kFloat) + 0.5, index.floor_divide(columns).to(at::kFloat) + 0.5}));
+      anchors.push_back(at::stack({index.remainder(columns).to(at::kFloat) + 0.5,
+                                   index.floor_divide(columns).to(at::kFloat) + 0.5}));
       strides.push_back(at::full({4, rows * columns}, static_cast<double>(scale), at::kFloat));
     }
     return {at::cat(anchors, 1).unsqueeze(0), at::cat(strides, 1).unsqueeze(0)};
@@ -174,10 +182,12 @@ class GraphExporter {
     onnx_.Concat(scores, 2, "class_logits");
     onnx_.Node("Sigmoid", {"class_logits"}, "scores");
     onnx_.Reshape(onnx_.Concat(boxes, 2, "side_logits"), {1, 4, kBoxBins, count}, "side_bins");
-    OnnxGraph::Set(onnx_.Node("Transpose", {"side_bins"}, "bins_first"), "perm", std::vector<int64_t>{0, 2, 1, 3});
+    OnnxGraph::Set(onnx_.Node("Transpose", {"side_bins"}, "bins_first"), "perm",
+                   std::vector<int64_t>{0, 2, 1, 3});
     OnnxGraph::Set(onnx_.Node("Softmax", {"bins_first"}, "bin_weights"), "axis", int64_t{1});
     const torch::Tensor bins = at::arange(kBoxBins, at::kFloat).view({1, kBoxBins, 1, 1});
-    onnx::NodeProto& expectation = onnx_.Node("Conv", {"bin_weights", onnx_.Constant("bins", bins)}, "side_rows");
+    onnx::NodeProto& expectation =
+        onnx_.Node("Conv", {"bin_weights", onnx_.Constant("bins", bins)}, "side_rows");
     OnnxGraph::Set(expectation, "kernel_shape", std::vector<int64_t>{1, 1});
     onnx_.Reshape("side_rows", {1, 4, count}, "sides");
     onnx_.Constant("anchors", anchors);
@@ -185,7 +195,9 @@ class GraphExporter {
     onnx_.Node("Sub", {"anchors", onnx_.Slice("sides", 1, 0, 2, "left_top")}, "corner_min");
     onnx_.Node("Add", {"anchors", onnx_.Slice("sides", 1, 2, 4, "right_bottom")}, "corner_max");
     onnx_.Node("Add", {"corner_min", "corner_max"}, "corner_sum");
-    onnx_.Node("Mul", {"corner_sum", onnx_.Constant("halves", at::full({1, 2, count}, 0.5, at::kFloat))}, "centre");
+    onnx_.Node("Mul",
+               {"corner_sum", onnx_.Constant("halves", at::full({1, 2, count}, 0.5, at::kFloat))},
+               "centre");
     onnx_.Node("Sub", {"corner_max", "corner_min"}, "size");
     onnx_.Node("Mul", {onnx_.Concat({"centre", "size"}, 1, "cells"), "strides"}, "boxes");
     onnx_.Concat({"boxes", "scores"}, 1, "output0");
@@ -201,8 +213,10 @@ class GraphExporter {
 
 }  // namespace
 
-Status ExportOnnx(const ModelGraph& graph, const NamedTensors& state, const OnnxOptions& options, const std::filesystem::path& file) {
-  if (options.form == OnnxForm::kSingleOutput && (options.width < 32 || options.width % 32 || options.height < 32 || options.height % 32)) {
+Status ExportOnnx(const ModelGraph& graph, const NamedTensors& state, const OnnxOptions& options,
+                  const std::filesystem::path& file) {
+  if (options.form == OnnxForm::kSingleOutput &&
+      (options.width < 32 || options.width % 32 || options.height < 32 || options.height % 32)) {
     return Status::Error("the input size of a single-output export must be a multiple of 32");
   }
   onnx::ModelProto model;
@@ -216,7 +230,8 @@ Status ExportOnnx(const ModelGraph& graph, const NamedTensors& state, const Onnx
   names->set_key("names");
   names->set_value(nlohmann::json(graph.classes).dump());
   std::string bytes;
-  if (!model.SerializeToString(&bytes)) return Status::Error(file.string() + ": the model is too large for an ONNX file");
+  if (!model.SerializeToString(&bytes))
+    return Status::Error(file.string() + ": the model is too large for an ONNX file");
   return WriteFileAtomically(file, bytes);
 }
 

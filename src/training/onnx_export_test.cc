@@ -44,7 +44,8 @@ std::unique_ptr<CompiledNetwork> Compile(const std::filesystem::path& file) {
 
 torch::Tensor ToTensor(const NetworkOutput& output) {
   std::vector<int64_t> shape(output.shape.begin(), output.shape.end());
-  if (!output.channels_last) return torch::from_blob(const_cast<float*>(output.data), shape).clone();
+  if (!output.channels_last)
+    return torch::from_blob(const_cast<float*>(output.data), shape).clone();
   const std::vector<int64_t> stored = {shape[0], shape[2], shape[3], shape[1]};
   return torch::from_blob(const_cast<float*>(output.data), stored).permute({0, 3, 1, 2}).clone();
 }
@@ -57,7 +58,8 @@ class OnnxExportTest : public testing::TestWithParam<const char*> {};
 
 TEST_P(OnnxExportTest, OneDnnAgreesWithLibtorch) {
   const Network network = MakeNetwork(GetParam());
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / (std::string(GetParam()) + ".onnx");
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / (std::string(GetParam()) + ".onnx");
   OnnxOptions options;
   options.half = false;
   ASSERT_TRUE(ExportOnnx(network.graph(), network.State(), options, file).ok());
@@ -72,12 +74,15 @@ TEST_P(OnnxExportTest, OneDnnAgreesWithLibtorch) {
     const bool box = output.name.starts_with("box_");
     const int stride = std::stoi(output.name.substr(output.name.find('_') + 1));
     const int index = stride == 8 ? 0 : stride == 16 ? 1 : 2;
-    EXPECT_LT(RelativeError(ToTensor(output), box ? heads.boxes[index] : heads.classes[index]), 1e-4) << output.name;
+    EXPECT_LT(RelativeError(ToTensor(output), box ? heads.boxes[index] : heads.classes[index]),
+              1e-4)
+        << output.name;
   }
   EXPECT_EQ(compiled->outputs().size(), 6U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, OnnxExportTest, testing::Values("yolov8n", "yolov8n_msf", "yolov8n_fpn", "yolov8n_hrnet"));
+INSTANTIATE_TEST_SUITE_P(Models, OnnxExportTest,
+                         testing::Values("yolov8n", "yolov8n_msf", "yolov8n_fpn", "yolov8n_hrnet"));
 
 TEST(OnnxExportTest, SingleOutputHoldsDecodedBoxes) {
   const Network network = MakeNetwork("yolov8n");
@@ -93,7 +98,8 @@ TEST(OnnxExportTest, SingleOutputHoldsDecodedBoxes) {
   const DecodedHeads decoded = DecodeHeads(network.Forward(image), kWidth);
   const torch::Tensor output = ToTensor(compiled->outputs()[0]).transpose(1, 2);
   ASSERT_EQ(output.size(2), 24);
-  const torch::Tensor minimum = decoded.boxes.narrow(-1, 0, 2), maximum = decoded.boxes.narrow(-1, 2, 2);
+  const torch::Tensor minimum = decoded.boxes.narrow(-1, 0, 2),
+                      maximum = decoded.boxes.narrow(-1, 2, 2);
   EXPECT_LT(RelativeError(output.narrow(-1, 0, 2), (minimum + maximum) / 2), 1e-4);
   EXPECT_LT(RelativeError(output.narrow(-1, 2, 2), maximum - minimum), 1e-4);
   EXPECT_LT(RelativeError(output.narrow(-1, 4, 20), decoded.class_logits.sigmoid()), 1e-4);

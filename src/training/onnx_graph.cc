@@ -8,13 +8,15 @@ namespace msf {
 namespace {
 
 // A dimension is a number or a symbol.
-void FillType(onnx::ValueInfoProto& info, const std::string& name, const std::vector<std::string>& shape) {
+void FillType(onnx::ValueInfoProto& info, const std::string& name,
+              const std::vector<std::string>& shape) {
   info.set_name(name);
   auto* tensor = info.mutable_type()->mutable_tensor_type();
   tensor->set_elem_type(onnx::TensorProto::FLOAT);
   for (const std::string& size : shape) {
     auto* dimension = tensor->mutable_shape()->add_dim();
-    if (std::all_of(size.begin(), size.end(), [](unsigned char c) { return std::isdigit(c) != 0; })) {
+    if (std::all_of(size.begin(), size.end(),
+                    [](unsigned char c) { return std::isdigit(c) != 0; })) {
       dimension->set_dim_value(std::stoll(size));
     } else {
       dimension->set_dim_param(size);
@@ -22,7 +24,8 @@ void FillType(onnx::ValueInfoProto& info, const std::string& name, const std::ve
   }
 }
 
-onnx::AttributeProto& AddAttribute(onnx::NodeProto& node, const std::string& name, onnx::AttributeProto::AttributeType type) {
+onnx::AttributeProto& AddAttribute(onnx::NodeProto& node, const std::string& name,
+                                   onnx::AttributeProto::AttributeType type) {
   onnx::AttributeProto* attribute = node.add_attribute();
   attribute->set_name(name);
   attribute->set_type(type);
@@ -31,7 +34,8 @@ onnx::AttributeProto& AddAttribute(onnx::NodeProto& node, const std::string& nam
 
 }  // namespace
 
-onnx::NodeProto& OnnxGraph::Node(const std::string& op, const std::vector<std::string>& inputs, const std::string& output) {
+onnx::NodeProto& OnnxGraph::Node(const std::string& op, const std::vector<std::string>& inputs,
+                                 const std::string& output) {
   onnx::NodeProto* node = graph_.add_node();
   node->set_op_type(op);
   node->set_name(op + "_" + output);
@@ -44,7 +48,8 @@ void OnnxGraph::Set(onnx::NodeProto& node, const std::string& name, int64_t valu
   AddAttribute(node, name, onnx::AttributeProto::INT).set_i(value);
 }
 
-void OnnxGraph::Set(onnx::NodeProto& node, const std::string& name, const std::vector<int64_t>& values) {
+void OnnxGraph::Set(onnx::NodeProto& node, const std::string& name,
+                    const std::vector<int64_t>& values) {
   onnx::AttributeProto& attribute = AddAttribute(node, name, onnx::AttributeProto::INTS);
   for (int64_t value : values) attribute.add_ints(value);
 }
@@ -64,7 +69,8 @@ std::string OnnxGraph::Constant(const std::string& name, const torch::Tensor& va
   tensor->set_data_type(half ? onnx::TensorProto::FLOAT16 : onnx::TensorProto::FLOAT);
   for (int64_t size : stored.sizes()) tensor->add_dims(size);
   tensor->set_raw_data(stored.data_ptr(), static_cast<size_t>(stored.nbytes()));
-  if (half) Set(Node("Cast", {name + "_half"}, name), "to", static_cast<int64_t>(onnx::TensorProto::FLOAT));
+  if (half)
+    Set(Node("Cast", {name + "_half"}, name), "to", static_cast<int64_t>(onnx::TensorProto::FLOAT));
   return name;
 }
 
@@ -77,19 +83,23 @@ std::string OnnxGraph::Constant(const std::string& name, const std::vector<int64
   return name;
 }
 
-std::string OnnxGraph::Reshape(const std::string& input, const std::vector<int64_t>& shape, const std::string& output) {
+std::string OnnxGraph::Reshape(const std::string& input, const std::vector<int64_t>& shape,
+                               const std::string& output) {
   Node("Reshape", {input, Constant(output + "_shape", shape)}, output);
   return output;
 }
 
-std::string OnnxGraph::Slice(const std::string& input, int64_t axis, int64_t begin, int64_t end, const std::string& output) {
+std::string OnnxGraph::Slice(const std::string& input, int64_t axis, int64_t begin, int64_t end,
+                             const std::string& output) {
   const std::string starts = Constant(output + "_start", std::vector<int64_t>{begin});
   const std::string ends = Constant(output + "_end", std::vector<int64_t>{end});
-  Node("Slice", {input, starts, ends, Constant(output + "_axis", std::vector<int64_t>{axis})}, output);
+  Node("Slice", {input, starts, ends, Constant(output + "_axis", std::vector<int64_t>{axis})},
+       output);
   return output;
 }
 
-std::string OnnxGraph::Concat(const std::vector<std::string>& inputs, int64_t axis, const std::string& output) {
+std::string OnnxGraph::Concat(const std::vector<std::string>& inputs, int64_t axis,
+                              const std::string& output) {
   Set(Node("Concat", inputs, output), "axis", axis);
   return output;
 }

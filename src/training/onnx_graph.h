@@ -1,11 +1,11 @@
 // Puts nodes and constants into an ONNX graph.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include <onnx/onnx_pb.h>
 #include <torch/types.h>
+
+#include <string>
+#include <vector>
 
 namespace msf {
 
@@ -14,9 +14,11 @@ class OnnxGraph {
   explicit OnnxGraph(onnx::GraphProto& graph) : graph_(graph) {}
 
   // Appends a node with one output and returns it for attributes.
-  onnx::NodeProto& Node(const std::string& op, const std::vector<std::string>& inputs, const std::string& output);
+  onnx::NodeProto& Node(const std::string& op, const std::vector<std::string>& inputs,
+                        const std::string& output);
   static void Set(onnx::NodeProto& node, const std::string& name, int64_t value);
-  static void Set(onnx::NodeProto& node, const std::string& name, const std::vector<int64_t>& values);
+  static void Set(onnx::NodeProto& node, const std::string& name,
+                  const std::vector<int64_t>& values);
   static void Set(onnx::NodeProto& node, const std::string& name, float value);
   static void Set(onnx::NodeProto& node, const std::string& name, const std::string& value);
 
@@ -25,10 +27,13 @@ class OnnxGraph {
   std::string Constant(const std::string& name, const std::vector<int64_t>& values);
 
   // Reshape to a constant shape.
-  std::string Reshape(const std::string& input, const std::vector<int64_t>& shape, const std::string& output);
+  std::string Reshape(const std::string& input, const std::vector<int64_t>& shape,
+                      const std::string& output);
   // Elements [begin, end) along an axis.
-  std::string Slice(const std::string& input, int64_t axis, int64_t begin, int64_t end, const std::string& output);
-  std::string Concat(const std::vector<std::string>& inputs, int64_t axis, const std::string& output);
+  std::string Slice(const std::string& input, int64_t axis, int64_t begin, int64_t end,
+                    const std::string& output);
+  std::string Concat(const std::vector<std::string>& inputs, int64_t axis,
+                     const std::string& output);
 
   void Input(const std::string& name, const std::vector<std::string>& shape);
   void Output(const std::string& name, const std::vector<std::string>& shape);

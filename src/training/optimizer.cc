@@ -1,10 +1,10 @@
 #include "training/optimizer.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <torch/types.h>
 #include <torch/utils.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace msf {
 
@@ -16,22 +16,29 @@ constexpr double kEpsilon = 1e-8;
 }  // namespace
 
 Status OptimizerOptions::Check() const {
-  if (method != "adamw" && method != "sgd") return Status::Error("optimizer.method must be adamw or sgd, not '" + method + "'");
-  if (decay != "cosine" && decay != "linear") return Status::Error("optimizer.decay must be cosine or linear, not '" + decay + "'");
+  if (method != "adamw" && method != "sgd")
+    return Status::Error("optimizer.method must be adamw or sgd, not '" + method + "'");
+  if (decay != "cosine" && decay != "linear")
+    return Status::Error("optimizer.decay must be cosine or linear, not '" + decay + "'");
   if (!(learning_rate > 0.0)) return Status::Error("optimizer.learning_rate must be positive");
-  if (!(momentum >= 0.0 && momentum < 1.0)) return Status::Error("optimizer.momentum must lie in [0, 1)");
+  if (!(momentum >= 0.0 && momentum < 1.0))
+    return Status::Error("optimizer.momentum must lie in [0, 1)");
   if (!(clip_norm > 0.0)) return Status::Error("optimizer.clip_norm must be positive");
   return Status::Ok();
 }
 
 double LearningRateAt(const OptimizerOptions& options, double epoch, double epochs) {
   const double progress = std::clamp(epoch / epochs, 0.0, 1.0);
-  const double shape = options.decay == "cosine" ? 0.5 * (1.0 + std::cos(M_PI * progress)) : 1.0 - progress;
-  const double warmup = options.warmup_epochs > 0.0 ? std::min(1.0, epoch / options.warmup_epochs) : 1.0;
-  return options.learning_rate * warmup * (options.final_fraction + (1.0 - options.final_fraction) * shape);
+  const double shape =
+      options.decay == "cosine" ? 0.5 * (1.0 + std::cos(M_PI * progress)) : 1.0 - progress;
+  const double warmup =
+      options.warmup_epochs > 0.0 ? std::min(1.0, epoch / options.warmup_epochs) : 1.0;
+  return options.learning_rate * warmup *
+         (options.final_fraction + (1.0 - options.final_fraction) * shape);
 }
 
-Optimizer::Optimizer(const NamedTensors& parameters, const OptimizerOptions& options, const std::set<std::string>& trained)
+Optimizer::Optimizer(const NamedTensors& parameters, const OptimizerOptions& options,
+                     const std::set<std::string>& trained)
     : options_(options) {
   for (const auto& [name, tensor] : parameters) {
     if (!trained.empty() && !trained.contains(name)) continue;
@@ -72,7 +79,8 @@ void Optimizer::Step(double learning_rate) {
   }
 }
 
-void Optimizer::StepAdamW(const std::string& name, torch::Tensor& parameter, const torch::Tensor& gradient, double learning_rate) {
+void Optimizer::StepAdamW(const std::string& name, torch::Tensor& parameter,
+                          const torch::Tensor& gradient, double learning_rate) {
   if (parameter.dim() > 1) parameter.mul_(1.0 - learning_rate * options_.weight_decay);
   torch::Tensor& mean = first_[name];
   torch::Tensor& square = second_[name];
@@ -81,11 +89,14 @@ void Optimizer::StepAdamW(const std::string& name, torch::Tensor& parameter, con
   const auto t = static_cast<double>(steps_);
   const double mean_scale = 1.0 - std::pow(options_.momentum, t);
   const double square_scale = std::sqrt(1.0 - std::pow(kSecondMomentDecay, t));
-  parameter.addcdiv_(mean, square.sqrt().div_(square_scale).add_(kEpsilon), -learning_rate / mean_scale);
+  parameter.addcdiv_(mean, square.sqrt().div_(square_scale).add_(kEpsilon),
+                     -learning_rate / mean_scale);
 }
 
-void Optimizer::StepSgd(const std::string& name, torch::Tensor& parameter, const torch::Tensor& gradient, double learning_rate) {
-  const torch::Tensor full = parameter.dim() > 1 ? gradient + parameter * options_.weight_decay : gradient;
+void Optimizer::StepSgd(const std::string& name, torch::Tensor& parameter,
+                        const torch::Tensor& gradient, double learning_rate) {
+  const torch::Tensor full =
+      parameter.dim() > 1 ? gradient + parameter * options_.weight_decay : gradient;
   torch::Tensor& velocity = first_[name];
   velocity.mul_(options_.momentum).add_(full);
   parameter.add_(full + velocity * options_.momentum, -learning_rate);

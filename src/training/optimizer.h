@@ -1,5 +1,5 @@
-// SGD and AdamW over named tensors, the moving average of weights, and the schedule of learning rates. State is plain named tensors, so
-// that a checkpoint holds all of it.
+// SGD and AdamW over named tensors, the moving average of weights, and the schedule of learning
+// rates. State is plain named tensors, so that a checkpoint holds all of it.
 #pragma once
 
 #include <map>
@@ -27,7 +27,8 @@ struct OptimizerOptions {
     visit("final_fraction", final_fraction, "learning rate at the end, as a part of the largest");
     visit("decay", decay, "cosine or linear");
     visit("momentum", momentum, "momentum of SGD, decay of AdamW's first moment");
-    visit("weight_decay", weight_decay, "weight decay of convolution weights (not of norms and biases)");
+    visit("weight_decay", weight_decay,
+          "weight decay of convolution weights (not of norms and biases)");
     visit("warmup_epochs", warmup_epochs, "epochs in which the learning rate rises from 0");
     visit("clip_norm", clip_norm, "largest norm of the gradient");
   }
@@ -40,7 +41,8 @@ double LearningRateAt(const OptimizerOptions& options, double epoch, double epoc
 class Optimizer {
  public:
   // Trains the `parameters` listed in `trained`; all of them where that is empty.
-  Optimizer(const NamedTensors& parameters, const OptimizerOptions& options, const std::set<std::string>& trained = {});
+  Optimizer(const NamedTensors& parameters, const OptimizerOptions& options,
+            const std::set<std::string>& trained = {});
 
   // The named parameters learn `factor` times as fast as the others.
   void ScaleRate(const std::set<std::string>& names, double factor);
@@ -53,8 +55,10 @@ class Optimizer {
 
  private:
   double ClipFactor() const;
-  void StepAdamW(const std::string& name, torch::Tensor& parameter, const torch::Tensor& gradient, double learning_rate);
-  void StepSgd(const std::string& name, torch::Tensor& parameter, const torch::Tensor& gradient, double learning_rate);
+  void StepAdamW(const std::string& name, torch::Tensor& parameter, const torch::Tensor& gradient,
+                 double learning_rate);
+  void StepSgd(const std::string& name, torch::Tensor& parameter, const torch::Tensor& gradient,
+               double learning_rate);
 
   OptimizerOptions options_;
   NamedTensors parameters_;
@@ -64,7 +68,8 @@ class Optimizer {
   int64_t steps_ = 0;
 };
 
-// Moving average of a network's state: average = d * average + (1 - d) * state, d = decay * (1 - exp(-updates / ramp)).
+// Moving average of a network's state: average = d * average + (1 - d) * state, d = decay * (1 -
+// exp(-updates / ramp)).
 class WeightAverage {
  public:
   WeightAverage(const Network& network, double decay, double ramp);

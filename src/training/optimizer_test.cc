@@ -1,9 +1,9 @@
 #include "training/optimizer.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
 #include <torch/types.h>
+
+#include <cmath>
 
 namespace msf {
 namespace {
@@ -53,7 +53,8 @@ TEST(OptimizerTest, GradientsAreClippedAndRatesScaled) {
 }
 
 TEST(OptimizerTest, OnlyListedParametersMove) {
-  const NamedTensors parameters = {{"a", torch::zeros({1}).requires_grad_(true)}, {"b", torch::zeros({1}).requires_grad_(true)}};
+  const NamedTensors parameters = {{"a", torch::zeros({1}).requires_grad_(true)},
+                                   {"b", torch::zeros({1}).requires_grad_(true)}};
   Optimizer optimizer(parameters, {}, {"b"});
   for (const auto& [name, tensor] : parameters) tensor.mutable_grad() = torch::ones({1});
   optimizer.Step(0.1);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-
 #include <opencv2/imgproc.hpp>
 
 namespace msf {
@@ -15,14 +14,15 @@ double Uniform(std::mt19937_64& random, double low, double high) {
 
 }  // namespace
 
-void ChangeColours(cv::Mat& pixels, double hue, double saturation, double value, std::mt19937_64& random) {
+void ChangeColours(cv::Mat& pixels, double hue, double saturation, double value,
+                   std::mt19937_64& random) {
   const double h = 1.0 + Uniform(random, -hue, hue);
   const double s = 1.0 + Uniform(random, -saturation, saturation);
   const double v = 1.0 + Uniform(random, -value, value);
   cv::Mat table(1, 256, CV_8UC3);
   for (int i = 0; i < 256; ++i) {
-    table.at<cv::Vec3b>(i) = {static_cast<uint8_t>(std::fmod(i * h, 180.0)), cv::saturate_cast<uint8_t>(i * s),
-                              cv::saturate_cast<uint8_t>(i * v)};
+    table.at<cv::Vec3b>(i) = {static_cast<uint8_t>(std::fmod(i * h, 180.0)),
+                              cv::saturate_cast<uint8_t>(i * s), cv::saturate_cast<uint8_t>(i * v)};
   }
   cv::Mat hsv;
   cv::cvtColor(pixels, hsv, cv::COLOR_BGR2HSV);

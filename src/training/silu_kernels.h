@@ -1,4 +1,5 @@
-// The loops behind FastSilu, apart from libtorch's headers so that the compiler can be told to vectorise them.
+// The loops behind FastSilu, apart from libtorch's headers so that the compiler can be told to
+// vectorise them.
 #pragma once
 
 #include <cstddef>

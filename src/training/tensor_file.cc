@@ -1,7 +1,7 @@
+#include <torch/csrc/api/include/torch/serialize.h>
+
 #include <fstream>
 #include <sstream>
-
-#include <torch/csrc/api/include/torch/serialize.h>
 
 #include "training/network.h"
 #include "util/atomic_file.h"
@@ -11,14 +11,17 @@ namespace msf {
 StatusOr<NamedTensors> LoadTensors(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return Status::Error(file.string() + ": cannot be opened; give a file of weights");
-  const std::vector<char> bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  const std::vector<char> bytes((std::istreambuf_iterator<char>(stream)),
+                                std::istreambuf_iterator<char>());
   NamedTensors tensors;
   try {
     for (const auto& entry : torch::pickle_load(bytes).toGenericDict()) {
-      if (entry.value().isTensor()) tensors[entry.key().toStringRef()] = entry.value().toTensor().to(torch::kFloat);
+      if (entry.value().isTensor())
+        tensors[entry.key().toStringRef()] = entry.value().toTensor().to(torch::kFloat);
     }
   } catch (const std::exception&) {
-    return Status::Error(file.string() + ": is not a dict of tensors as torch.save or a training here writes it");
+    return Status::Error(file.string() +
+                         ": is not a dict of tensors as torch.save or a training here writes it");
   }
   return tensors;
 }

@@ -1,11 +1,11 @@
 #include "training/trainer.h"
 
+#include <torch/types.h>
+#include <torch/utils.h>
+
 #include <algorithm>
 #include <numeric>
 #include <set>
-
-#include <torch/types.h>
-#include <torch/utils.h>
 
 #include "training/curves.h"
 #include "training/detection_loss.h"
@@ -43,24 +43,28 @@ std::vector<LabeledImage> SetAside(std::vector<LabeledImage>& images, int count,
 }  // namespace
 
 Status TrainOptions::Check() const {
-  if (epochs < 1 || batch < 1) return Status::Error("train.epochs and train.batch must be at least 1");
+  if (epochs < 1 || batch < 1)
+    return Status::Error("train.epochs and train.batch must be at least 1");
   if (side < 32 || side % 32 != 0) return Status::Error("train.side must be a multiple of 32");
   if (distill_epochs < 0 || validation_images < 0 || patience < 0 || threads < 1) {
-    return Status::Error("train.distill_epochs, validation_images and patience must not be negative, threads at least 1");
+    return Status::Error(
+        "train.distill_epochs, validation_images and patience must not be negative, threads at "
+        "least 1");
   }
   if (freeze_layers < 0) return Status::Error("train.freeze_layers must not be negative");
   MSF_RETURN_IF_ERROR(optimizer.Check());
   return augmentation.Check();
 }
 
-Trainer::Trainer(const ModelConfig& model, const TrainOptions& options, std::vector<LabeledImage> images,
-                 ProgressCallback on_progress)
+Trainer::Trainer(const ModelConfig& model, const TrainOptions& options,
+                 std::vector<LabeledImage> images, ProgressCallback on_progress)
     : options_(options),
       images_(std::move(images)),
       on_progress_(std::move(on_progress)),
       network_(BuildModelGraph(model), static_cast<uint64_t>(options.seed)) {
   torch::set_num_threads(options.threads);
-  // The images set aside do not depend on the seed, so that trainings with several seeds can be compared.
+  // The images set aside do not depend on the seed, so that trainings with several seeds can be
+  // compared.
   validation_ = SetAside(images_, options.validation_images, 0);
 }
 
@@ -71,7 +75,8 @@ Status Trainer::Initialize(const NamedTensors& weights) {
 
   const std::string branch = network_.graph().nodes[network_.graph().class_heads[0]].name;
   const auto first = weights.find(branch.substr(0, branch.size() - 2) + ".0.conv.weight");
-  const ModelConfig config = TeacherConfig(network_.graph().classes, static_cast<int>(first->second.size(0)));
+  const ModelConfig config =
+      TeacherConfig(network_.graph().classes, static_cast<int>(first->second.size(0)));
   teacher_ = std::make_unique<Network>(BuildModelGraph(config), 0);
   const StatusOr<NamedTensors> same = AdaptWeights(weights, teacher_->graph());
   if (!same.ok()) return same.status();
@@ -88,13 +93,17 @@ Status Trainer::Initialize(const NamedTensors& weights) {
 void Trainer::InitializeBlocks() {
   constexpr int kBatches = 8;
   const std::vector<GraphLayer>& layers = network_.graph().layers;
-  if (std::none_of(layers.begin(), layers.end(), [](const GraphLayer& layer) { return layer.type == "MSFConv"; })) return;
+  if (std::none_of(layers.begin(), layers.end(),
+                   [](const GraphLayer& layer) { return layer.type == "MSFConv"; }))
+    return;
   const EpochSampler sampler = Sampler(-1000, options_.augmentation.mosaic);
   std::vector<torch::Tensor> pictures;
-  for (int i = 0; i < std::min(kBatches, sampler.num_batches()); ++i) pictures.push_back(sampler.Make(i).images);
+  for (int i = 0; i < std::min(kBatches, sampler.num_batches()); ++i)
+    pictures.push_back(sampler.Make(i).images);
   const std::vector<double> errors = InitializeMsfLayers(network_, *teacher_, torch::cat(pictures));
   for (size_t i = 0; i < errors.size(); ++i) {
-    on_progress_({"initialize", 0, 1, static_cast<int>(i), static_cast<int>(errors.size()), errors[i]});
+    on_progress_(
+        {"initialize", 0, 1, static_cast<int>(i), static_cast<int>(errors.size()), errors[i]});
   }
 }
 
@@ -108,7 +117,8 @@ void Trainer::Distill() {
   rates.learning_rate = options_.distill_rate;
   rates.weight_decay = 0.0;
   Optimizer optimizer(network_.parameters(), rates, trained);
-  for (const auto& [name, tensor] : network_.parameters()) tensor.requires_grad_(trained.contains(name));
+  for (const auto& [name, tensor] : network_.parameters())
+    tensor.requires_grad_(trained.contains(name));
   network_.set_training(true);
   for (int epoch = 0; epoch < options_.distill_epochs; ++epoch) {
     // Negative epochs, so that training sees other pictures.
@@ -118,7 +128,8 @@ void Trainer::Distill() {
       loss.backward();
       const double at = epoch + static_cast<double>(step) / sampler.num_batches();
       optimizer.Step(LearningRateAt(rates, at + 0.05, options_.distill_epochs));
-      on_progress_({"distill", epoch, options_.distill_epochs, step, sampler.num_batches(), loss.item<double>()});
+      on_progress_({"distill", epoch, options_.distill_epochs, step, sampler.num_batches(),
+                    loss.item<double>()});
     }
   }
   for (const auto& [name, tensor] : network_.parameters()) tensor.requires_grad_(true);
@@ -154,7 +165,8 @@ EpochSampler Trainer::Sampler(int epoch, double mosaic) const {
 
 HeadOutputs Trainer::ForwardForTraining(const torch::Tensor& images, torch::Tensor& distance) {
   const MixedPrecision mixed(options_.bfloat16);
-  const int frozen = options_.freeze_layers > 0 ? network_.graph().layers[options_.freeze_layers - 1].end : 1;
+  const int frozen =
+      options_.freeze_layers > 0 ? network_.graph().layers[options_.freeze_layers - 1].end : 1;
   std::vector<torch::Tensor> values(network_.graph().nodes.size());
   values[0] = images.contiguous(torch::MemoryFormat::ChannelsLast);
   {
@@ -204,7 +216,9 @@ void Trainer::TrainEpoch(int epoch) {
     average_->Update(network_);
     on_progress_({"train", epoch, options_.epochs, step, steps, loss});
   }
-  for (double* sum : {&record.box_loss, &record.class_loss, &record.distribution_loss, &record.imitation_loss}) *sum /= steps;
+  for (double* sum :
+       {&record.box_loss, &record.class_loss, &record.distribution_loss, &record.imitation_loss})
+    *sum /= steps;
   ValidateEpoch(record);
   records_.push_back(record);
 }
@@ -214,15 +228,17 @@ void Trainer::ValidateEpoch(EpochRecord& record) {
   Network averaged(network_.graph(), 0);
   const Status loaded = averaged.Load(average_->state());
   MSF_CHECK(loaded.ok(), loaded.message());
-  const DetectionMetrics metrics = Validate(averaged, validation_, options_.side, 5, options_.bfloat16);
+  const DetectionMetrics metrics =
+      Validate(averaged, validation_, options_.side, 5, options_.bfloat16);
   record.map50 = metrics.map50;
   record.map50_95 = metrics.map50_95;
 }
 
 bool Trainer::Stalled() const {
   if (options_.patience == 0 || records_.empty()) return false;
-  const auto best = std::max_element(records_.begin(), records_.end(),
-                                     [](const EpochRecord& a, const EpochRecord& b) { return a.map50_95 < b.map50_95; });
+  const auto best = std::max_element(
+      records_.begin(), records_.end(),
+      [](const EpochRecord& a, const EpochRecord& b) { return a.map50_95 < b.map50_95; });
   return records_.end() - best > options_.patience;
 }
 
@@ -233,14 +249,17 @@ Status Trainer::Run(const std::filesystem::path& directory) {
   if (images_.empty()) return Status::Error("there are no images to train on");
   const std::filesystem::path checkpoint = directory / "checkpoint.pt";
   std::filesystem::create_directories(directory);
-  optimizer_ = std::make_unique<Optimizer>(network_.parameters(), options_.optimizer, TrainedParameters());
+  optimizer_ =
+      std::make_unique<Optimizer>(network_.parameters(), options_.optimizer, TrainedParameters());
   optimizer_->ScaleRate(NewParameters(), options_.new_rate);
   if (std::filesystem::exists(checkpoint)) {
-    average_ = std::make_unique<WeightAverage>(network_, options_.average_decay, options_.average_ramp);
+    average_ =
+        std::make_unique<WeightAverage>(network_, options_.average_decay, options_.average_ramp);
     MSF_RETURN_IF_ERROR(LoadCheckpoint(checkpoint));
   } else {
     Distill();
-    average_ = std::make_unique<WeightAverage>(network_, options_.average_decay, options_.average_ramp);
+    average_ =
+        std::make_unique<WeightAverage>(network_, options_.average_decay, options_.average_ramp);
     MSF_RETURN_IF_ERROR(SaveCheckpoint(checkpoint));
   }
   while (static_cast<int>(records_.size()) < options_.epochs && !Stalled()) {

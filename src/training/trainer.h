@@ -42,22 +42,34 @@ struct TrainOptions {
   void Visit(Visitor& visit) {
     visit("epochs", epochs, "passes over the training images");
     visit("batch", batch, "images per step");
-    visit("side", side, "training pictures are square with this many pixels a side (a multiple of 32)");
-    visit("balance", balance, "exponent by which images with rare classes are shown more often; 0: all alike");
+    visit("side", side,
+          "training pictures are square with this many pixels a side (a multiple of 32)");
+    visit("balance", balance,
+          "exponent by which images with rare classes are shown more often; 0: all alike");
     visit("mosaic_off_epochs", mosaic_off_epochs, "last epochs without mosaics");
     visit("bfloat16", bfloat16, "convolutions in bfloat16");
-    visit("seed", seed, "decides starting weights of new parts, the order of images and all augmentation");
+    visit("seed", seed,
+          "decides starting weights of new parts, the order of images and all augmentation");
     visit("threads", threads, "threads of libtorch");
-    visit("freeze_norms", freeze_norms, "keep the batch norms' statistics of the starting weights (after distillation)");
-    visit("freeze_layers", freeze_layers, "first layers that keep their starting weights (after distillation)");
-    visit("distill_epochs", distill_epochs, "passes in which new layers learn to reproduce the layers of the starting weights");
+    visit("freeze_norms", freeze_norms,
+          "keep the batch norms' statistics of the starting weights (after distillation)");
+    visit("freeze_layers", freeze_layers,
+          "first layers that keep their starting weights (after distillation)");
+    visit("distill_epochs", distill_epochs,
+          "passes in which new layers learn to reproduce the layers of the starting weights");
     visit("distill_rate", distill_rate, "largest learning rate (AdamW) of those passes");
-    visit("new_rate", new_rate, "new layers learn this many times as fast as those with starting weights");
-    visit("imitation", imitation, "weight of the distance to the class logits of the network that gave the starting weights");
-    visit("average_decay", average_decay, "decay of the moving average of weights that is kept in the end");
+    visit("new_rate", new_rate,
+          "new layers learn this many times as fast as those with starting weights");
+    visit(
+        "imitation", imitation,
+        "weight of the distance to the class logits of the network that gave the starting weights");
+    visit("average_decay", average_decay,
+          "decay of the moving average of weights that is kept in the end");
     visit("average_ramp", average_ramp, "updates over which that decay rises");
-    visit("validation_images", validation_images, "training images that are set aside for the curve");
-    visit("patience", patience, "epochs without a better validation after which the training ends; 0: never");
+    visit("validation_images", validation_images,
+          "training images that are set aside for the curve");
+    visit("patience", patience,
+          "epochs without a better validation after which the training ends; 0: never");
     visit("optimizer", optimizer, "");
     visit("augmentation", augmentation, "");
   }
@@ -91,14 +103,17 @@ class Trainer {
   using ProgressCallback = std::function<void(const TrainProgress&)>;
 
   // `images`: all images, of which `options.validation_images` (chosen by the seed) are set aside.
-  Trainer(const ModelConfig& model, const TrainOptions& options, std::vector<LabeledImage> images, ProgressCallback on_progress);
+  Trainer(const ModelConfig& model, const TrainOptions& options, std::vector<LabeledImage> images,
+          ProgressCallback on_progress);
 
-  // Starts from the weights of a YOLOv8n-like detector (see AdaptWeights). New layers are distilled from it in Run().
+  // Starts from the weights of a YOLOv8n-like detector (see AdaptWeights). New layers are distilled
+  // from it in Run().
   Status Initialize(const NamedTensors& weights);
 
-  // Trains until the end, writing DIR/checkpoint.pt after every epoch, DIR/curves.csv, DIR/curves.svg, and at the end DIR/weights.pt (the
-  // moving average). Goes on from DIR/checkpoint.pt where there is one of the same options; the result is then the same as without the
-  // interruption.
+  // Trains until the end, writing DIR/checkpoint.pt after every epoch, DIR/curves.csv,
+  // DIR/curves.svg, and at the end DIR/weights.pt (the moving average). Goes on from
+  // DIR/checkpoint.pt where there is one of the same options; the result is then the same as
+  // without the interruption.
   Status Run(const std::filesystem::path& directory);
 
   const std::vector<EpochRecord>& records() const { return records_; }

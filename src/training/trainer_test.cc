@@ -1,10 +1,10 @@
 #include "training/trainer.h"
 
-#include <fstream>
-#include <stdexcept>
-
 #include <gtest/gtest.h>
+
+#include <fstream>
 #include <opencv2/imgproc.hpp>
+#include <stdexcept>
 
 namespace msf {
 namespace {
@@ -41,16 +41,18 @@ std::vector<LabeledImage> TinyImages() {
     } else {
       cv::circle(image.pixels, {box.x + 12, box.y + 12}, 12, cv::Scalar(20, 20, 250), cv::FILLED);
     }
-    image.objects.push_back({i % 2, static_cast<float>(box.x), 10, static_cast<float>(box.x + 24), 34, false});
+    image.objects.push_back(
+        {i % 2, static_cast<float>(box.x), 10, static_cast<float>(box.x + 24), 34, false});
     images.push_back(std::move(image));
   }
   return images;
 }
 
 Trainer MakeTrainer(const TrainOptions& options, int interrupt_in_epoch) {
-  return Trainer(TinyModel(), options, TinyImages(), [interrupt_in_epoch](const TrainProgress& progress) {
-    if (progress.epoch == interrupt_in_epoch) throw Interruption();
-  });
+  return Trainer(TinyModel(), options, TinyImages(),
+                 [interrupt_in_epoch](const TrainProgress& progress) {
+                   if (progress.epoch == interrupt_in_epoch) throw Interruption();
+                 });
 }
 
 std::filesystem::path FreshFolder(const std::string& name) {
@@ -101,11 +103,14 @@ TEST(TrainerTest, FrozenLayersKeepTheirWeights) {
   const Network start(BuildModelGraph(TinyModel()), static_cast<uint64_t>(options.seed));
   Trainer trainer = MakeTrainer(options, -1);
   ASSERT_TRUE(trainer.Run(FreshFolder("frozen")).ok());
-  for (const char* name : {"model.0.conv.weight", "model.2.cv2.bn.weight", "model.1.bn.running_mean"}) {
+  for (const char* name :
+       {"model.0.conv.weight", "model.2.cv2.bn.weight", "model.1.bn.running_mean"}) {
     const auto& tensors = start.parameters().contains(name) ? start.parameters() : start.buffers();
     EXPECT_TRUE(trainer.weights().at(name).allclose(tensors.at(name), 1e-6, 1e-7)) << name;
   }
-  EXPECT_FALSE(trainer.weights().at("model.3.conv.weight").allclose(start.parameters().at("model.3.conv.weight"), 1e-6, 1e-7));
+  EXPECT_FALSE(trainer.weights()
+                   .at("model.3.conv.weight")
+                   .allclose(start.parameters().at("model.3.conv.weight"), 1e-6, 1e-7));
 }
 
 TEST(TrainOptionsTest, NonsenseIsRefused) {
@@ -125,7 +130,8 @@ TEST(BatchTest, RareClassesAreShownMoreOften) {
 }
 
 TEST(BatchTest, ChannelsBecomeRgb) {
-  const torch::Tensor tensor = ImagesToTensor({{cv::Mat(2, 2, CV_8UC3, cv::Scalar(255, 0, 51)), {}}});  // blue, green, red
+  const torch::Tensor tensor =
+      ImagesToTensor({{cv::Mat(2, 2, CV_8UC3, cv::Scalar(255, 0, 51)), {}}});  // blue, green, red
   EXPECT_NEAR(tensor[0][0][0][0].item<float>(), 0.2F, 1e-6);
   EXPECT_NEAR(tensor[0][2][1][1].item<float>(), 1.0F, 1e-6);
 }

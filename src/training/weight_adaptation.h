@@ -5,9 +5,10 @@
 
 namespace msf {
 
-// `source` re-arranged for `target`: the rows of the class heads follow the class names (20 VOC classes take the rows of their COCO
-// counterparts), and where the class branch is narrower its most influential channels are kept. Everything else is copied by name.
-// `source` must hold the 80 COCO classes or as many as `target`; another count is an error.
+// `source` re-arranged for `target`: the rows of the class heads follow the class names (20 VOC
+// classes take the rows of their COCO counterparts), and where the class branch is narrower its
+// most influential channels are kept. Everything else is copied by name. `source` must hold the 80
+// COCO classes or as many as `target`; another count is an error.
 StatusOr<NamedTensors> AdaptWeights(const NamedTensors& source, const ModelGraph& target);
 
 }  // namespace msf
