@@ -15,13 +15,18 @@ struct DetectorArguments {
   std::string size;  // WIDTHxHEIGHT, empty: the options' own
 
   void AddTo(CLI::App& command) {
-    command.add_option("--model", options.model, "ONNX file, or the name of a model that comes with MSF-SLAM")
+    command
+        .add_option("--model", options.model,
+                    "ONNX file, or the name of a model that comes with MSF-SLAM")
         ->capture_default_str();
-    command.add_option("--classes", options.classes, "file with one class name per line, when the model has none");
+    command.add_option("--classes", options.classes,
+                       "file with one class name per line, when the model has none");
     command.add_option("--backend", options.backend, "onednn or opencv")->capture_default_str();
-    command.add_option("--precision", options.precision, "auto, fp32, bf16 or int8")->capture_default_str();
+    command.add_option("--precision", options.precision, "auto, fp32, bf16 or int8")
+        ->capture_default_str();
     command.add_option("--size", size, "input of the network, WIDTHxHEIGHT in multiples of 32");
-    command.add_option("--threads", options.threads, "threads of the network")->capture_default_str();
+    command.add_option("--threads", options.threads, "threads of the network")
+        ->capture_default_str();
   }
 
   // The detector, or CommandFailure.
@@ -29,7 +34,8 @@ struct DetectorArguments {
     if (!size.empty()) {
       char end = 0;
       if (std::sscanf(size.c_str(), "%dx%d%c", &options.width, &options.height, &end) != 2) {
-        throw CommandFailure("--size needs the form WIDTHxHEIGHT, e.g. 416x320, not '" + size + "'");
+        throw CommandFailure("--size needs the form WIDTHxHEIGHT, e.g. 416x320, not '" + size +
+                             "'");
       }
     }
     return Require(MakeDetector(options));

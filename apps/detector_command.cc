@@ -1,15 +1,15 @@
 // msf-slam detector info|quantize|time; the other subcommands have files of their own.
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <fstream>
 #include <iostream>
 #include <memory>
-
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <opencv2/core/utility.hpp>
-#include <unistd.h>
 
 #include "apps/detector_arguments.h"
 #include "apps/detector_training.h"
@@ -33,10 +33,15 @@ void AddInfo(CLI::App& detector) {
     std::string model;
     int width = 640, height = 640;
   };
-  CLI::App* command = detector.add_subcommand("info", "Print a model's layers, parameters and GFLOPs");
+  CLI::App* command =
+      detector.add_subcommand("info", "Print a model's layers, parameters and GFLOPs");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("model", arguments->model, "ONNX file, or the name of a model that comes with MSF-SLAM")->required();
-  command->add_option("--width", arguments->width, "image width for the GFLOPs, pixels")->capture_default_str();
+  command
+      ->add_option("model", arguments->model,
+                   "ONNX file, or the name of a model that comes with MSF-SLAM")
+      ->required();
+  command->add_option("--width", arguments->width, "image width for the GFLOPs, pixels")
+      ->capture_default_str();
   command->add_option("--height", arguments->height, "image height, pixels")->capture_default_str();
   command->callback([arguments] {
     const Graph graph = Require(ReadOnnx(Require(FindModel(arguments->model))));
@@ -60,31 +65,46 @@ std::vector<fs::path> Spread(const std::vector<fs::path>& images, int count) {
 }
 
 void Quantize(const QuantizeArguments& arguments) {
-  const std::vector<fs::path> images = Spread(Require(FindImages(arguments.images, arguments.list_file)), arguments.count);
+  const std::vector<fs::path> images =
+      Spread(Require(FindImages(arguments.images, arguments.list_file)), arguments.count);
   const std::string bytes = Require(ReadModelBytes(Require(FindModel(arguments.model))));
   const Graph graph = Require(ParseOnnx(bytes, arguments.model));
   ImageReader reader;
   const int count = static_cast<int>(images.size());
   Progress progress("quantize", "runs", 2 * count);
   const ActivationRanges ranges = Require(Calibrate(
-      graph, arguments.options, count, [&](int i) { return reader.ReadColor(images[static_cast<size_t>(i)]); },
+      graph, arguments.options, count,
+      [&](int i) { return reader.ReadColor(images[static_cast<size_t>(i)]); },
       [&](int done) { progress.Update(done); }));
   const std::string halved = Require(HalveOnnxWeights(bytes));
-  const std::string calibrated = Require(SetOnnxMetadata(halved, {{kActivationRangesKey, FormatActivationRanges(ranges)}}));
+  const std::string calibrated =
+      Require(SetOnnxMetadata(halved, {{kActivationRangesKey, FormatActivationRanges(ranges)}}));
   Require(WriteFileAtomically(arguments.out, calibrated));
-  std::cout << fmt::format("{}: {:.2f} MB, {} activation ranges from {} images\n", arguments.out.string(),
-                           static_cast<double>(calibrated.size()) * 1e-6, ranges.size(), count);
+  std::cout << fmt::format("{}: {:.2f} MB, {} activation ranges from {} images\n",
+                           arguments.out.string(), static_cast<double>(calibrated.size()) * 1e-6,
+                           ranges.size(), count);
 }
 
 void AddQuantize(CLI::App& detector) {
-  CLI::App* command = detector.add_subcommand("quantize", "Calibrate a model on images so that it can run in int8");
+  CLI::App* command =
+      detector.add_subcommand("quantize", "Calibrate a model on images so that it can run in int8");
   const auto arguments = std::make_shared<QuantizeArguments>();
-  command->add_option("model", arguments->model, "ONNX file, or the name of a model that comes with MSF-SLAM")->required();
-  command->add_option("--images", arguments->images, "calibration images: folder, VOC data set or RGB-D sequence")->required();
-  command->add_option("--list", arguments->list_file, "file that names the images to use, e.g. ImageSets/Main/trainval.txt");
-  command->add_option("--count", arguments->count, "how many of them, spread evenly")->capture_default_str();
-  command->add_option("--width", arguments->options.width, "input width, pixels (0: the model's own, or 416)");
-  command->add_option("--height", arguments->options.height, "input height, pixels (0: the model's own, or 320)");
+  command
+      ->add_option("model", arguments->model,
+                   "ONNX file, or the name of a model that comes with MSF-SLAM")
+      ->required();
+  command
+      ->add_option("--images", arguments->images,
+                   "calibration images: folder, VOC data set or RGB-D sequence")
+      ->required();
+  command->add_option("--list", arguments->list_file,
+                      "file that names the images to use, e.g. ImageSets/Main/trainval.txt");
+  command->add_option("--count", arguments->count, "how many of them, spread evenly")
+      ->capture_default_str();
+  command->add_option("--width", arguments->options.width,
+                      "input width, pixels (0: the model's own, or 416)");
+  command->add_option("--height", arguments->options.height,
+                      "input height, pixels (0: the model's own, or 320)");
   command->add_option("--out", arguments->out, "the new model file")->required();
   command->callback([arguments] { Quantize(*arguments); });
 }
@@ -113,7 +133,8 @@ cv::Mat TestPicture() {
   cv::Mat picture(480, 640, CV_8UC3);
   for (int y = 0; y < picture.rows; ++y) {
     for (int x = 0; x < picture.cols; ++x) {
-      picture.at<cv::Vec3b>(y, x) = {static_cast<uchar>(x / 3), static_cast<uchar>(y / 2), static_cast<uchar>((x ^ y) & 255)};
+      picture.at<cv::Vec3b>(y, x) = {static_cast<uchar>(x / 3), static_cast<uchar>(y / 2),
+                                     static_cast<uchar>((x ^ y) & 255)};
     }
   }
   return picture;
@@ -138,20 +159,27 @@ void Time(TimeArguments& arguments) {
   }
   std::sort(times_ms.begin(), times_ms.end());
   const double median = times_ms[times_ms.size() / 2], memory = ResidentMemory_MB() - memory_before;
-  std::cout << fmt::format("{}: {:.2f} ms CPU per image (median of {}, fastest {:.2f}), first detection after {:.3f} s "
-                           "({:.3f} s CPU), {:.0f} MB\n",
-                           detector->description(), median, arguments.runs, times_ms.front(), first_wall_s, first_cpu_s, memory);
+  std::cout << fmt::format(
+      "{}: {:.2f} ms CPU per image (median of {}, fastest {:.2f}), first detection after {:.3f} s "
+      "({:.3f} s CPU), {:.0f} MB\n",
+      detector->description(), median, arguments.runs, times_ms.front(), first_wall_s, first_cpu_s,
+      memory);
   if (arguments.json_file.empty()) return;
-  const nlohmann::json json = {{"model", detector->description()}, {"cpu_ms_median", median}, {"cpu_ms_least", times_ms.front()},
-                               {"first_detection_s", first_wall_s}, {"first_detection_cpu_s", first_cpu_s}, {"memory_MB", memory}};
+  const nlohmann::json json = {
+      {"model", detector->description()},     {"cpu_ms_median", median},
+      {"cpu_ms_least", times_ms.front()},     {"first_detection_s", first_wall_s},
+      {"first_detection_cpu_s", first_cpu_s}, {"memory_MB", memory}};
   Require(WriteFileAtomically(arguments.json_file, json.dump(2) + "\n"));
 }
 
 void AddTime(CLI::App& detector) {
-  CLI::App* command = detector.add_subcommand("time", "Measure a detector's speed and memory on this machine");
+  CLI::App* command =
+      detector.add_subcommand("time", "Measure a detector's speed and memory on this machine");
   const auto arguments = std::make_shared<TimeArguments>();
   arguments->detector.AddTo(*command);
-  command->add_option("--runs", arguments->runs, "images")->capture_default_str()->check(CLI::Range(1, 100000));
+  command->add_option("--runs", arguments->runs, "images")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
   command->add_option("--json", arguments->json_file, "file for the figures");
   command->callback([arguments] { Time(*arguments); });
 }

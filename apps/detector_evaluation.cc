@@ -10,7 +10,8 @@ namespace {
 
 std::vector<LabeledBox> LabelsOf(const VocImage& image) {
   std::vector<LabeledBox> labels;
-  for (const VocObject& o : image.objects) labels.push_back({o.label, {o.x0, o.y0, o.x1, o.y1}, o.difficult});
+  for (const VocObject& o : image.objects)
+    labels.push_back({o.label, {o.x0, o.y0, o.x1, o.y1}, o.difficult});
   return labels;
 }
 
@@ -19,7 +20,8 @@ size_t LargestOf(const std::vector<LabeledBox>& objects, int class_id) {
   size_t largest = objects.size();
   for (size_t i = 0; i < objects.size(); ++i) {
     if (objects[i].class_id != class_id || objects[i].ignored) continue;
-    if (largest == objects.size() || objects[i].box.area() > objects[largest].box.area()) largest = i;
+    if (largest == objects.size() || objects[i].box.area() > objects[largest].box.area())
+      largest = i;
   }
   return largest;
 }
@@ -28,16 +30,19 @@ size_t LargestOf(const std::vector<LabeledBox>& objects, int class_id) {
 
 const std::vector<std::string>& PascalVocClassNames() {
   static const std::vector<std::string> kNames = {
-      "aeroplane", "bicycle", "bird",  "boat",      "bottle", "bus",         "car",   "cat",  "chair", "cow",
-      "diningtable", "dog",   "horse", "motorbike", "person", "pottedplant", "sheep", "sofa", "train", "tvmonitor"};
+      "aeroplane", "bicycle",     "bird",  "boat",        "bottle", "bus",      "car",
+      "cat",       "chair",       "cow",   "diningtable", "dog",    "horse",    "motorbike",
+      "person",    "pottedplant", "sheep", "sofa",        "train",  "tvmonitor"};
   return kNames;
 }
 
-StatusOr<DetectorEvaluation> DetectorEvaluation::Make(Detector& detector, std::vector<VocImage> images,
+StatusOr<DetectorEvaluation> DetectorEvaluation::Make(Detector& detector,
+                                                      std::vector<VocImage> images,
                                                       std::function<void(int)> progress) {
   const std::vector<int> to_voc = MatchClasses(detector.class_names(), PascalVocClassNames());
   if (std::all_of(to_voc.begin(), to_voc.end(), [](int id) { return id < 0; })) {
-    return Status::Error("none of the detector's classes is one of PASCAL VOC, so it cannot be evaluated there");
+    return Status::Error(
+        "none of the detector's classes is one of PASCAL VOC, so it cannot be evaluated there");
   }
   return DetectorEvaluation(detector, std::move(images), to_voc, std::move(progress));
 }

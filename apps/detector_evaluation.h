@@ -16,8 +16,8 @@ namespace msf {
 // The 20 classes of PASCAL VOC in their customary order.
 const std::vector<std::string>& PascalVocClassNames();
 
-// Scores a detector on images labelled with PASCAL VOC classes. The detector's classes are matched by name ("airplane" is
-// "aeroplane"); what it finds of other classes does not count.
+// Scores a detector on images labelled with PASCAL VOC classes. The detector's classes are matched
+// by name ("airplane" is "aeroplane"); what it finds of other classes does not count.
 class DetectorEvaluation {
  public:
   // `progress(done)` counts images. An error when no class of the detector is one of VOC.
@@ -28,7 +28,8 @@ class DetectorEvaluation {
   StatusOr<std::vector<ScoredImage>> RunUpright();
   // Turned pictures.
   StatusOr<std::vector<ScoredImage>> RunRotated(double degrees);
-  // In every image with objects of `class_id` the largest of them is cut by a side of the picture, each side in turn.
+  // In every image with objects of `class_id` the largest of them is cut by a side of the picture,
+  // each side in turn.
   StatusOr<std::vector<ScoredImage>> RunCut(int class_id, double fraction);
 
   const std::vector<VocImage>& images() const { return images_; }
@@ -36,10 +37,14 @@ class DetectorEvaluation {
  private:
   DetectorEvaluation(Detector& detector, std::vector<VocImage> images, std::vector<int> to_voc,
                      std::function<void(int)> progress)
-      : detector_(detector), images_(std::move(images)), to_voc_(std::move(to_voc)), progress_(std::move(progress)) {}
+      : detector_(detector),
+        images_(std::move(images)),
+        to_voc_(std::move(to_voc)),
+        progress_(std::move(progress)) {}
 
   // `vary(picture, index)` yields what the detector sees.
-  StatusOr<std::vector<ScoredImage>> Run(const std::function<LabeledPicture(LabeledPicture, size_t)>& vary);
+  StatusOr<std::vector<ScoredImage>> Run(
+      const std::function<LabeledPicture(LabeledPicture, size_t)>& vary);
 
   Detector& detector_;
   std::vector<VocImage> images_;

@@ -1,8 +1,8 @@
 #include "apps/detector_plots.h"
 
-#include <cmath>
-
 #include <fmt/format.h>
+
+#include <cmath>
 
 #include "evaluation/svg_canvas.h"
 
@@ -22,7 +22,8 @@ Color ColorOf(size_t index, size_t count) {
   const double value = index % 2 == 0 ? 0.85 : 0.6;
   const auto channel = [&](double offset) {
     const double k = std::fmod(offset + hue, 6.0);
-    return static_cast<uint8_t>(255 * (value - value * 0.85 * std::clamp(std::min(k, 4.0 - k), 0.0, 1.0)));
+    return static_cast<uint8_t>(
+        255 * (value - value * 0.85 * std::clamp(std::min(k, 4.0 - k), 0.0, 1.0)));
   };
   return {channel(5), channel(3), channel(1)};
 }
@@ -44,11 +45,13 @@ void DrawAxes(SvgCanvas& canvas) {
 
 }  // namespace
 
-std::string PlotPrecisionRecall(const DetectionMetrics& metrics, const std::vector<std::string>& class_names,
-                                int min_objects) {
+std::string PlotPrecisionRecall(const DetectionMetrics& metrics,
+                                const std::vector<std::string>& class_names, int min_objects) {
   SvgCanvas canvas(kWidth, kHeight);
-  canvas.Text({kPlot.left, 26}, fmt::format("Precision and recall at IoU 0.5, mAP50 {:.3f} over {} classes", metrics.map50,
-                                            metrics.num_classes), {14, "start"});
+  canvas.Text({kPlot.left, 26},
+              fmt::format("Precision and recall at IoU 0.5, mAP50 {:.3f} over {} classes",
+                          metrics.map50, metrics.num_classes),
+              {14, "start"});
   DrawAxes(canvas);
   double row = kPlot.top + 10;
   for (size_t i = 0; i < metrics.per_class.size(); ++i) {

@@ -1,10 +1,10 @@
 #include "apps/image_list.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <fstream>
 #include <map>
-
-#include <fmt/format.h>
 
 #include "io/frame_list.h"
 
@@ -15,14 +15,16 @@ namespace fs = std::filesystem;
 
 bool IsImage(const fs::path& file) {
   std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
 }
 
 StatusOr<std::vector<fs::path>> ImagesInFolder(const fs::path& folder) {
   std::vector<fs::path> images;
   std::error_code failure;
-  for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end; entry.increment(failure)) {
+  for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
+       entry.increment(failure)) {
     if (IsImage(entry->path())) images.push_back(entry->path());
   }
   if (failure) return Status::Error(folder.string() + ": cannot be read: " + failure.message());
@@ -48,23 +50,30 @@ StatusOr<std::vector<fs::path>> ImagesOfSequence(const fs::path& folder) {
 StatusOr<std::vector<fs::path>> AllImages(const fs::path& source) {
   std::error_code ignored;
   if (fs::is_regular_file(source, ignored)) return std::vector<fs::path>{source};
-  if (!fs::is_directory(source, ignored)) return Status::Error(source.string() + ": there is no such image or folder");
-  if (fs::exists(source / "rgb.txt") || fs::exists(source / "associations.txt")) return ImagesOfSequence(source);
+  if (!fs::is_directory(source, ignored))
+    return Status::Error(source.string() + ": there is no such image or folder");
+  if (fs::exists(source / "rgb.txt") || fs::exists(source / "associations.txt"))
+    return ImagesOfSequence(source);
   if (fs::is_directory(source / "JPEGImages")) return ImagesInFolder(source / "JPEGImages");
   return ImagesInFolder(source);
 }
 
-StatusOr<std::vector<fs::path>> Pick(const std::vector<fs::path>& images, const fs::path& list_file) {
+StatusOr<std::vector<fs::path>> Pick(const std::vector<fs::path>& images,
+                                     const fs::path& list_file) {
   std::map<std::string, fs::path> by_stem;
   for (const fs::path& image : images) by_stem[image.stem().string()] = image;
   std::ifstream list(list_file);
-  if (!list) return Status::Error(list_file.string() + ": the list of images cannot be read; check the path");
+  if (!list)
+    return Status::Error(list_file.string() +
+                         ": the list of images cannot be read; check the path");
   std::vector<fs::path> picked;
   for (std::string line; std::getline(list, line);) {
     const std::string stem = line.substr(0, line.find_first_of(" \t\r"));
     if (stem.empty()) continue;
     const auto found = by_stem.find(stem);
-    if (found == by_stem.end()) return Status::Error(fmt::format("{}: lists '{}', which is not among the images", list_file.string(), stem));
+    if (found == by_stem.end())
+      return Status::Error(
+          fmt::format("{}: lists '{}', which is not among the images", list_file.string(), stem));
     picked.push_back(found->second);
   }
   return picked;
@@ -76,7 +85,8 @@ StatusOr<std::vector<fs::path>> FindImages(const fs::path& source, const fs::pat
   StatusOr<std::vector<fs::path>> images = AllImages(source);
   if (images.ok() && !list_file.empty()) images = Pick(*images, list_file);
   if (images.ok() && images->empty()) {
-    return Status::Error((list_file.empty() ? source : list_file).string() + ": holds no PNG or JPEG image");
+    return Status::Error((list_file.empty() ? source : list_file).string() +
+                         ": holds no PNG or JPEG image");
   }
   return images;
 }

@@ -9,9 +9,10 @@
 
 namespace msf {
 
-// `source` is an image, a folder of images, a data set in VOC layout (its JPEGImages) or an RGB-D sequence in TUM layout (its colour
-// images). `list_file`, unless empty, names the wanted images by their stems, one per line (the form of VOC's ImageSets), and
-// gives their order. An empty result and a listed image that is not there are errors.
+// `source` is an image, a folder of images, a data set in VOC layout (its JPEGImages) or an RGB-D
+// sequence in TUM layout (its colour images). `list_file`, unless empty, names the wanted images by
+// their stems, one per line (the form of VOC's ImageSets), and gives their order. An empty result
+// and a listed image that is not there are errors.
 StatusOr<std::vector<std::filesystem::path>> FindImages(const std::filesystem::path& source,
                                                         const std::filesystem::path& list_file);
 

@@ -1,10 +1,9 @@
 // Pictures of what a detector found.
 #pragma once
 
+#include <opencv2/core/mat.hpp>
 #include <string>
 #include <vector>
-
-#include <opencv2/core/mat.hpp>
 
 #include "detection/detection.h"
 

@@ -7,7 +7,9 @@
 namespace msf {
 namespace {
 
-const Tensor& Weights(const Graph& graph, const Node& conv) { return *graph.value(conv.inputs[1]).constant; }
+const Tensor& Weights(const Graph& graph, const Node& conv) {
+  return *graph.value(conv.inputs[1]).constant;
+}
 
 bool HasConstantWeights(const Graph& graph, const Node& conv) {
   return std::all_of(conv.inputs.begin() + 1, conv.inputs.end(),
@@ -29,12 +31,14 @@ bool IsPlainConv(const Graph& graph, const Node& node) {
 }
 
 std::vector<float> Bias(const Graph& graph, const Node& conv) {
-  if (conv.inputs.size() > 2 && conv.inputs[2] != kNoValue) return graph.value(conv.inputs[2]).constant->floats;
+  if (conv.inputs.size() > 2 && conv.inputs[2] != kNoValue)
+    return graph.value(conv.inputs[2]).constant->floats;
   return std::vector<float>(static_cast<size_t>(Weights(graph, conv).shape[0]), 0.0f);
 }
 
 bool IsLinear(const Epilogue& e) {
-  return e.addend == kNoValue && e.activation == Activation::kNone && e.scale.empty() && e.shift.empty();
+  return e.addend == kNoValue && e.activation == Activation::kNone && e.scale.empty() &&
+         e.shift.empty();
 }
 
 void SetKernel(Graph& graph, Node& conv, Tensor weights, std::vector<float> bias) {
@@ -45,25 +49,31 @@ void SetKernel(Graph& graph, Node& conv, Tensor weights, std::vector<float> bias
   conv.attributes["group"] = int64_t{1};
   conv.inputs.resize(3);
   conv.inputs[1] = graph.AddConstant(conv.name + "/merged", std::move(weights));
-  conv.inputs[2] = graph.AddConstant(conv.name + "/bias", Tensor::Floats(channels, std::move(bias)));
+  conv.inputs[2] =
+      graph.AddConstant(conv.name + "/bias", Tensor::Floats(channels, std::move(bias)));
 }
 
 // Makes the 1x1 convolution at `index` do the depthwise one before it as well.
 void MergeDepthwise(GraphRewriter& rewriter, int index) {
   Graph& graph = rewriter.graph();
   Node& point = rewriter.node(index);
-  if (!IsPlainConv(graph, point) || point.Int("group", 1) != 1 || Weights(graph, point).shape[2] != 1) return;
+  if (!IsPlainConv(graph, point) || point.Int("group", 1) != 1 ||
+      Weights(graph, point).shape[2] != 1)
+    return;
   const int before = rewriter.OnlyFedBy(point.inputs[0], "Conv");
   if (before < 0 || !IsPlainConv(graph, rewriter.node(before))) return;
   const Node depth = rewriter.node(before);
   const Tensor d = Weights(graph, depth), p = Weights(graph, point);
   const int64_t channels = p.shape[1], kernel = d.shape[2];
-  if (!IsLinear(depth.epilogue) || depth.Int("group", 1) != channels || d.shape[0] != channels || kernel == 1) return;
+  if (!IsLinear(depth.epilogue) || depth.Int("group", 1) != channels || d.shape[0] != channels ||
+      kernel == 1)
+    return;
   Tensor merged = Tensor::Zeros(ElementType::kFloat, {p.shape[0], channels, kernel, kernel});
   const size_t area = static_cast<size_t>(kernel * kernel);
   for (size_t i = 0; i < merged.floats.size(); ++i) {
     const size_t pair = i / area;  // output channel and input channel
-    merged.floats[i] = p.floats[pair] * d.floats[pair % static_cast<size_t>(channels) * area + i % area];
+    merged.floats[i] =
+        p.floats[pair] * d.floats[pair % static_cast<size_t>(channels) * area + i % area];
   }
   std::vector<float> bias = Bias(graph, point);
   const std::vector<float> depth_bias = Bias(graph, depth);
@@ -91,21 +101,26 @@ std::vector<int> Branches(GraphRewriter& rewriter, const Node& concat) {
     if (branch < 0) return {};
     const Node& conv = rewriter.node(branch);
     const Node& first = branches.empty() ? conv : rewriter.node(branches[0]);
-    if (!IsPlainConv(graph, conv) || conv.Int("group", 1) != 1 || conv.inputs[0] != first.inputs[0]) return {};
+    if (!IsPlainConv(graph, conv) || conv.Int("group", 1) != 1 || conv.inputs[0] != first.inputs[0])
+      return {};
     if (!SameEpilogue(conv.epilogue, first.epilogue)) return {};
     branches.push_back(branch);
   }
   return branches;
 }
 
-void Append(std::vector<float>& all, const std::vector<float>& more) { all.insert(all.end(), more.begin(), more.end()); }
+void Append(std::vector<float>& all, const std::vector<float>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
 
 // Copies a kernel into the middle of a larger one, output channels from `first` on.
 void Embed(const Tensor& from, int64_t first, Tensor& to) {
   const int64_t k = from.shape[2], size = to.shape[2], margin = (size - k) / 2;
   for (size_t i = 0; i < from.floats.size(); ++i) {
-    const int64_t at = static_cast<int64_t>(i), plane = at / (k * k), row = at / k % k, col = at % k;
-    const int64_t target = ((first * to.shape[1] + plane) * size + row + margin) * size + col + margin;
+    const int64_t at = static_cast<int64_t>(i), plane = at / (k * k), row = at / k % k,
+                  col = at % k;
+    const int64_t target =
+        ((first * to.shape[1] + plane) * size + row + margin) * size + col + margin;
     to.floats[static_cast<size_t>(target)] = from.floats[i];
   }
 }
@@ -133,9 +148,11 @@ void MergeConcat(GraphRewriter& rewriter, int index) {
   if (branches.empty()) return;
   Node merged = rewriter.node(branches[0]);
   int64_t kernel = 1;
-  for (const int branch : branches) kernel = std::max(kernel, Weights(graph, rewriter.node(branch)).shape[2]);
+  for (const int branch : branches)
+    kernel = std::max(kernel, Weights(graph, rewriter.node(branch)).shape[2]);
   const int64_t in = Weights(graph, merged).shape[1];
-  Tensor weights = Tensor::Zeros(ElementType::kFloat, {graph.value(concat.outputs[0]).shape[1], in, kernel, kernel});
+  Tensor weights = Tensor::Zeros(ElementType::kFloat,
+                                 {graph.value(concat.outputs[0]).shape[1], in, kernel, kernel});
   std::vector<float> bias, scale, shift;
   for (const int branch : branches) {
     const Node& conv = rewriter.node(branch);
@@ -146,7 +163,8 @@ void MergeConcat(GraphRewriter& rewriter, int index) {
   }
   merged.epilogue.scale = scale;
   merged.epilogue.shift = shift;
-  if (merged.epilogue.addend != kNoValue) merged.epilogue.addend = JoinAddends(rewriter, branches, concat);
+  if (merged.epilogue.addend != kNoValue)
+    merged.epilogue.addend = JoinAddends(rewriter, branches, concat);
   merged.outputs = {concat.outputs[0]};
   SetKernel(graph, merged, std::move(weights), std::move(bias));
   for (const int branch : branches) rewriter.Remove(branch);

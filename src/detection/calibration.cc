@@ -50,7 +50,7 @@ ActivationRange ValueHistogram::BestRange() const {
   ActivationRange best{low_, high_};
   double least = SquaredError(low_, high_);
   // One bound after the other: few values have long tails on both sides.
-  for (float ActivationRange::* bound : {&ActivationRange::high, &ActivationRange::low}) {
+  for (float ActivationRange::*bound : {&ActivationRange::high, &ActivationRange::low}) {
     const float whole = best.*bound;
     for (int i = 1; i < kSearchSteps; ++i) {
       ActivationRange candidate = best;
@@ -66,7 +66,8 @@ ActivationRange ValueHistogram::BestRange() const {
   return best;
 }
 
-StatusOr<ActivationRanges> Calibrate(const Graph& graph, const CalibrationOptions& options, int num_images,
+StatusOr<ActivationRanges> Calibrate(const Graph& graph, const CalibrationOptions& options,
+                                     int num_images,
                                      const std::function<StatusOr<cv::Mat>(int)>& image,
                                      const std::function<void(int)>& progress) {
   DetectorOptions detector;

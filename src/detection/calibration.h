@@ -2,11 +2,10 @@
 #pragma once
 
 #include <functional>
+#include <opencv2/core/mat.hpp>
 #include <span>
 #include <string>
 #include <vector>
-
-#include <opencv2/core/mat.hpp>
 
 #include "detection/graph.h"
 #include "detection/storage_plan.h"
@@ -21,7 +20,8 @@ class ValueHistogram {
   // Second pass, after all images widened it: the counts.
   void Count(std::span<const float> numbers);
 
-  // The span, containing 0, for which rounding to 256 levels and cutting what lies outside loses least in the mean square.
+  // The span, containing 0, for which rounding to 256 levels and cutting what lies outside loses
+  // least in the mean square.
   ActivationRange BestRange() const;
 
  private:
@@ -33,13 +33,15 @@ class ValueHistogram {
 };
 
 struct CalibrationOptions {
-  int width = 0;   // input of the network, pixels; 0: the model's own, or 416 x 320
+  int width = 0;  // input of the network, pixels; 0: the model's own, or 416 x 320
   int height = 0;
 };
 
-// Runs the network in float32 over `num_images` images (twice) and returns the range of every value. `image(i)` yields image i, 8-bit BGR or
-// grey; `progress(done)` is told how many of 2 * num_images runs are done.
-StatusOr<ActivationRanges> Calibrate(const Graph& graph, const CalibrationOptions& options, int num_images,
+// Runs the network in float32 over `num_images` images (twice) and returns the range of every
+// value. `image(i)` yields image i, 8-bit BGR or grey; `progress(done)` is told how many of 2 *
+// num_images runs are done.
+StatusOr<ActivationRanges> Calibrate(const Graph& graph, const CalibrationOptions& options,
+                                     int num_images,
                                      const std::function<StatusOr<cv::Mat>(int)>& image,
                                      const std::function<void(int)>& progress);
 

@@ -1,8 +1,8 @@
 #include "detection/calibration.h"
 
-#include <random>
-
 #include <gtest/gtest.h>
+
+#include <random>
 
 #include "detection/compiled_network.h"
 #include "detection/onednn_detector.h"
@@ -54,8 +54,11 @@ TEST(Calibrate, GivesEveryConvolutionARange) {
   TestNetwork network(options);
   Graph graph = network.builder().Parse().value();
   int last = 0;
-  const auto image = [](int i) -> StatusOr<cv::Mat> { return cv::Mat(50, 80, CV_8UC3, cv::Scalar(40 * i, 90, 200 - 30 * i)); };
-  const ActivationRanges ranges = Calibrate(graph, {96, 64}, 3, image, [&](int done) { last = done; }).value();
+  const auto image = [](int i) -> StatusOr<cv::Mat> {
+    return cv::Mat(50, 80, CV_8UC3, cv::Scalar(40 * i, 90, 200 - 30 * i));
+  };
+  const ActivationRanges ranges =
+      Calibrate(graph, {96, 64}, 3, image, [&](int done) { last = done; }).value();
   EXPECT_EQ(last, 6);
   graph.metadata[kActivationRangesKey] = FormatActivationRanges(ranges);
   for (const auto merging : {CompileOptions::Merging::kNever, CompileOptions::Merging::kAlways}) {

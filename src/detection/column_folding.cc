@@ -10,7 +10,8 @@ int64_t FloorDivide(int64_t a, int64_t b) { return (a >= 0 ? a : a - b + 1) / b;
 
 std::vector<float> Repeat(const std::vector<float>& values, int64_t times) {
   std::vector<float> repeated;
-  for (int64_t i = 0; i < times && !values.empty(); ++i) repeated.insert(repeated.end(), values.begin(), values.end());
+  for (int64_t i = 0; i < times && !values.empty(); ++i)
+    repeated.insert(repeated.end(), values.begin(), values.end());
   return repeated;
 }
 
@@ -26,10 +27,12 @@ int FoldingFactor(const ConvolutionSpec& spec) {
   }
   // Measured: with more channels the zeros cost more than the fuller blocks gain.
   if (w.stride[1] == 1) return in <= 8 ? 2 : 1;
-  return w.stride[1] == 2 && in <= 4 && (spec.compute == NumberFormat::kBfloat16 || out <= 8) ? 2 : 1;
+  return w.stride[1] == 2 && in <= 4 && (spec.compute == NumberFormat::kBfloat16 || out <= 8) ? 2
+                                                                                              : 1;
 }
 
-ConvolutionSpec FoldColumns(const ConvolutionSpec& spec, int factor, Tensor& weights, Tensor& bias) {
+ConvolutionSpec FoldColumns(const ConvolutionSpec& spec, int factor, Tensor& weights,
+                            Tensor& bias) {
   const Window& w = spec.window;
   const Shape& from = spec.weights->shape;
   const int64_t out = from[0], in = from[1], stride = w.stride[1], group = factor * stride;
@@ -39,13 +42,16 @@ ConvolutionSpec FoldColumns(const ConvolutionSpec& spec, int factor, Tensor& wei
   weights = Tensor::Zeros(ElementType::kFloat, {factor * out, group * in, from[2], kernel});
   const Shape to_strides = DenseStrides(weights.shape), from_strides = DenseStrides(from);
   for (int64_t i = 0; i < NumElements(from); ++i) {
-    const int64_t o = i / from_strides[0], c = i / from_strides[1] % in, y = i / from_strides[2] % from[2], x = i % from[3];
+    const int64_t o = i / from_strides[0], c = i / from_strides[1] % in,
+                  y = i / from_strides[2] % from[2], x = i % from[3];
     for (int64_t j = 0; j < factor; ++j) {
-      const int64_t column = j * stride - w.pad_begin[1] + x;  // relative to the first input pixel of the group
+      const int64_t column =
+          j * stride - w.pad_begin[1] + x;  // relative to the first input pixel of the group
       const int64_t place = FloorDivide(column, group);
       const int64_t channel = (column - place * group) * in + c;
-      weights.floats[static_cast<size_t>((j * out + o) * to_strides[0] + channel * to_strides[1] + y * to_strides[2] +
-                                         place - first)] = spec.weights->floats[static_cast<size_t>(i)];
+      weights.floats[static_cast<size_t>((j * out + o) * to_strides[0] + channel * to_strides[1] +
+                                         y * to_strides[2] + place - first)] =
+          spec.weights->floats[static_cast<size_t>(i)];
     }
   }
   ConvolutionSpec folded = spec;

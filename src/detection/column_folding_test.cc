@@ -1,8 +1,8 @@
 #include "detection/column_folding.h"
 
-#include <random>
-
 #include <gtest/gtest.h>
+
+#include <random>
 
 namespace msf {
 namespace {
@@ -15,7 +15,8 @@ std::vector<float> Random(size_t count) {
   return values;
 }
 
-std::vector<float> Execute(const ConvolutionSpec& spec, std::vector<float> input, std::vector<float> addend) {
+std::vector<float> Execute(const ConvolutionSpec& spec, std::vector<float> input,
+                           std::vector<float> addend) {
   std::vector<float> output(static_cast<size_t>(NumElements(spec.output_shape)));
   const auto step = MakeConvolutionStep(spec, {input.data(), addend.data(), output.data()});
   std::vector<std::byte> scratch(step->ScratchBytes() + 64);
@@ -29,7 +30,8 @@ class ColumnFolding : public testing::TestWithParam<std::array<int64_t, 4>> {};
 
 TEST_P(ColumnFolding, ComputesTheSame) {
   const auto [kernel, stride, in, out] = GetParam();
-  const Tensor weights = Tensor::Floats({out, in, kernel, kernel}, Random(static_cast<size_t>(out * in * kernel * kernel)));
+  const Tensor weights = Tensor::Floats({out, in, kernel, kernel},
+                                        Random(static_cast<size_t>(out * in * kernel * kernel)));
   const Tensor bias = Tensor::Floats({out}, Random(static_cast<size_t>(out)));
   ConvolutionSpec spec;
   spec.input_shape = {1, in, 6 * stride, 8 * stride};
@@ -53,13 +55,16 @@ TEST_P(ColumnFolding, ComputesTheSame) {
   Tensor folded_weights, folded_bias;
   const ConvolutionSpec folded = FoldColumns(spec, 2, folded_weights, folded_bias);
   EXPECT_EQ(folded.input_shape[1], in * 2 * stride);
-  const std::vector<float> expected = Execute(spec, input, addend), actual = Execute(folded, input, addend);
+  const std::vector<float> expected = Execute(spec, input, addend),
+                           actual = Execute(folded, input, addend);
   for (size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(actual[i], expected[i], 1e-4) << i;
 }
 
 INSTANTIATE_TEST_SUITE_P(Windows, ColumnFolding,
-                         testing::Values(std::array<int64_t, 4>{3, 1, 8, 8}, std::array<int64_t, 4>{5, 1, 8, 24},
-                                         std::array<int64_t, 4>{3, 2, 3, 8}, std::array<int64_t, 4>{7, 1, 4, 4}));
+                         testing::Values(std::array<int64_t, 4>{3, 1, 8, 8},
+                                         std::array<int64_t, 4>{5, 1, 8, 24},
+                                         std::array<int64_t, 4>{3, 2, 3, 8},
+                                         std::array<int64_t, 4>{7, 1, 4, 4}));
 
 }  // namespace
 }  // namespace msf

@@ -16,9 +16,10 @@ StatusOr<ActivationRanges> RangesFor(const Graph& graph, NetworkPrecision precis
   if (precision != NetworkPrecision::kInt8) return ActivationRanges();
   const auto found = graph.metadata.find(kActivationRangesKey);
   if (found == graph.metadata.end()) {
-    return Status::Error(graph.source +
-                         ": holds no activation ranges, so it cannot run in int8; make such a model with 'msf-slam "
-                         "detector quantize', or choose precision bf16 or fp32");
+    return Status::Error(
+        graph.source +
+        ": holds no activation ranges, so it cannot run in int8; make such a model with 'msf-slam "
+        "detector quantize', or choose precision bf16 or fp32");
   }
   StatusOr<ActivationRanges> ranges = ParseActivationRanges(found->second);
   if (!ranges.ok()) return Status::Error(graph.source + ": " + ranges.message());
@@ -30,20 +31,23 @@ Status CheckFloats(const Graph& graph) {
   for (const Node& node : graph.nodes) {
     for (const ValueId output : node.outputs) {
       if (graph.value(output).type == ElementType::kFloat) continue;
-      return Status::Error(graph.source + ": " + Describe(node) + " computes integers from the image, not supported");
+      return Status::Error(graph.source + ": " + Describe(node) +
+                           " computes integers from the image, not supported");
     }
   }
   return Status::Ok();
 }
 
 bool ShouldMerge(const CompileOptions& options) {
-  if (options.merging != CompileOptions::Merging::kAuto) return options.merging == CompileOptions::Merging::kAlways;
+  if (options.merging != CompileOptions::Merging::kAuto)
+    return options.merging == CompileOptions::Merging::kAlways;
   return options.precision != NetworkPrecision::kFloat32 && HasMatrixUnit();
 }
 
 }  // namespace
 
-StatusOr<std::unique_ptr<CompiledNetwork>> CompiledNetwork::Compile(const Graph& graph, const CompileOptions& options) {
+StatusOr<std::unique_ptr<CompiledNetwork>> CompiledNetwork::Compile(const Graph& graph,
+                                                                    const CompileOptions& options) {
   StatusOr<Graph> fixed = Specialize(graph, options.height, options.width);
   if (!fixed.ok()) return fixed.status();
   MSF_RETURN_IF_ERROR(CheckFloats(*fixed));

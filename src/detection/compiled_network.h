@@ -19,16 +19,18 @@ struct CompileOptions {
   int64_t width = 416;
   NetworkPrecision precision = NetworkPrecision::kFloat32;
   int threads = 1;
-  // One dense convolution instead of parallel branches (branch_merging.h); kAuto: where it is faster on this processor.
+  // One dense convolution instead of parallel branches (branch_merging.h); kAuto: where it is
+  // faster on this processor.
   enum class Merging { kNever, kAuto, kAlways } merging = Merging::kAuto;
   bool float_input = false;  // the image is given as floats (tests), not as 8-bit pixels
-  bool keep_values = false;  // no value's memory is reused, so that VisitValues() sees all (calibration, tests)
+  bool keep_values =
+      false;  // no value's memory is reused, so that VisitValues() sees all (calibration, tests)
 };
 
 // A result of the network as float32.
 struct NetworkOutput {
   std::string name;
-  Shape shape;  // in the order of the model file, e.g. [1, C, H, W]
+  Shape shape;                 // in the order of the model file, e.g. [1, C, H, W]
   bool channels_last = false;  // memory order of an image: [H][W][C] instead of [C][H][W]
   const float* data = nullptr;
 };
@@ -36,9 +38,11 @@ struct NetworkOutput {
 // Run() allocates nothing. Not to be used by two threads at once.
 class CompiledNetwork {
  public:
-  // Fixes the size, fuses and compiles. Precision kInt8 needs the activation ranges that calibration put into the model's
-  // metadata. An error names the file and, when a node is the reason, the node.
-  static StatusOr<std::unique_ptr<CompiledNetwork>> Compile(const Graph& graph, const CompileOptions& options);
+  // Fixes the size, fuses and compiles. Precision kInt8 needs the activation ranges that
+  // calibration put into the model's metadata. An error names the file and, when a node is the
+  // reason, the node.
+  static StatusOr<std::unique_ptr<CompiledNetwork>> Compile(const Graph& graph,
+                                                            const CompileOptions& options);
 
   // The image: RGB, 8 bits, [height][width][3]; the network sees it as 0..1.
   uint8_t* pixels();
@@ -50,8 +54,10 @@ class CompiledNetwork {
   // In the order of the model file; valid until the next Run().
   const std::vector<NetworkOutput>& outputs() const { return outputs_; }
 
-  // With keep_values and kFloat32: calls visit(name, numbers) for every image-shaped value inside the network.
-  void VisitValues(const std::function<void(const std::string&, std::span<const float>)>& visit) const;
+  // With keep_values and kFloat32: calls visit(name, numbers) for every image-shaped value inside
+  // the network.
+  void VisitValues(
+      const std::function<void(const std::string&, std::span<const float>)>& visit) const;
 
   // Memory for values and working space, in bytes, without weights.
   size_t activation_bytes() const { return activation_bytes_; }
@@ -83,7 +89,8 @@ class CompiledNetwork {
   std::vector<NamedNumbers> inner_values_;
 };
 
-// Metadata key under which a model file carries its activation ranges, and the text form: a JSON object {"name": [low, high], ...}.
+// Metadata key under which a model file carries its activation ranges, and the text form: a JSON
+// object {"name": [low, high], ...}.
 inline constexpr const char* kActivationRangesKey = "msf_activation_ranges";
 std::string FormatActivationRanges(const ActivationRanges& ranges);
 StatusOr<ActivationRanges> ParseActivationRanges(const std::string& text);

@@ -13,9 +13,11 @@ void AddCrudeRanges(Graph& graph, const CompileOptions& options) {
   observing.precision = NetworkPrecision::kFloat32;
   observing.keep_values = true;
   ActivationRanges ranges;
-  CompiledNetwork::Compile(graph, observing).value()->VisitValues([&](const std::string& name, std::span<const float>) {
-    ranges[name] = {-0.3f, 6.0f};
-  });
+  CompiledNetwork::Compile(graph, observing)
+      .value()
+      ->VisitValues([&](const std::string& name, std::span<const float>) {
+        ranges[name] = {-0.3f, 6.0f};
+      });
   graph.metadata[kActivationRangesKey] = FormatActivationRanges(ranges);
 }
 
@@ -26,7 +28,8 @@ void BM_Network(benchmark::State& state) {
   network_options.msf = state.range(0) != 0;
   TestNetwork source(network_options);
   Graph graph = source.builder().Parse().value();
-  CompileOptions options{state.range(3), state.range(2), static_cast<NetworkPrecision>(state.range(1))};
+  CompileOptions options{state.range(3), state.range(2),
+                         static_cast<NetworkPrecision>(state.range(1))};
   if (options.precision == NetworkPrecision::kInt8) AddCrudeRanges(graph, options);
   auto network = CompiledNetwork::Compile(graph, options).value();
   for (auto _ : state) {

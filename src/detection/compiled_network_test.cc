@@ -12,7 +12,8 @@ namespace {
 // A result in the order of the model file.
 std::vector<float> Dense(const NetworkOutput& output) {
   std::vector<float> values(static_cast<size_t>(NumElements(output.shape)));
-  Convert(output.shape, output.data, {NumberFormat::kFloat32, output.channels_last}, values.data(), {});
+  Convert(output.shape, output.data, {NumberFormat::kFloat32, output.channels_last}, values.data(),
+          {});
   return values;
 }
 
@@ -95,7 +96,8 @@ TEST(CompiledNetwork, AgreesLooselyInBfloat16) {
   if (!HasFastBfloat16()) GTEST_SKIP() << "this processor has no bfloat16";
   TestNetworkOptions options;
   options.msf = true;
-  const float error = ErrorAgainstInterpreter(Parse(options), {64, 96, NetworkPrecision::kBfloat16});
+  const float error =
+      ErrorAgainstInterpreter(Parse(options), {64, 96, NetworkPrecision::kBfloat16});
   EXPECT_LT(error, 0.05f);
   EXPECT_GT(error, 1e-6f);  // otherwise it did not run in bfloat16
 }
@@ -111,13 +113,15 @@ Graph Calibrated(Graph graph, CompileOptions options) {
   EXPECT_TRUE(network->Run().ok());
   ActivationRanges ranges;
   network->VisitValues([&](const std::string& name, std::span<const float> numbers) {
-    ranges[name] = {*std::min_element(numbers.begin(), numbers.end()), *std::max_element(numbers.begin(), numbers.end())};
+    ranges[name] = {*std::min_element(numbers.begin(), numbers.end()),
+                    *std::max_element(numbers.begin(), numbers.end())};
   });
   graph.metadata[kActivationRangesKey] = FormatActivationRanges(ranges);
   return graph;
 }
 
-// A network around one feature: 3x3 convolution with SiLU, `middle`, 3x3 convolution with SiLU, head.
+// A network around one feature: 3x3 convolution with SiLU, `middle`, 3x3 convolution with SiLU,
+// head.
 Graph AroundMiddle(const std::function<std::string(OnnxBuilder&, const std::string&)>& middle) {
   OnnxBuilder n(12);
   const std::string x = n.ConvSilu(n.Input("images", {1, 3, -1, -1}), 3, 16, 3, 2);
@@ -140,32 +144,39 @@ TEST(CompiledNetworkInt8, PlainConvolutions) {
 }
 
 TEST(CompiledNetworkInt8, OneByOneConvolution) {
-  ExpectInt8Agrees(AroundMiddle([](OnnxBuilder& n, const std::string& x) { return n.ConvSilu(x, 16, 16, 1); }), 4);
+  ExpectInt8Agrees(
+      AroundMiddle([](OnnxBuilder& n, const std::string& x) { return n.ConvSilu(x, 16, 16, 1); }),
+      4);
 }
 
 TEST(CompiledNetworkInt8, ShortcutBehindTheActivation) {
   ExpectInt8Agrees(AroundMiddle([](OnnxBuilder& n, const std::string& x) {
-    return n.Node("Add", {x, n.ConvSilu(x, 16, 16, 3)});
-  }), 4);
+                     return n.Node("Add", {x, n.ConvSilu(x, 16, 16, 3)});
+                   }),
+                   4);
 }
 
 TEST(CompiledNetworkInt8, AdditionBeforeTheActivation) {
   ExpectInt8Agrees(AroundMiddle([](OnnxBuilder& n, const std::string& x) {
-    return n.Silu(n.BatchNorm(n.Node("Add", {n.Conv(x, 16, 16, 3), x}), 16));
-  }), 4);
+                     return n.Silu(n.BatchNorm(n.Node("Add", {n.Conv(x, 16, 16, 3), x}), 16));
+                   }),
+                   4);
 }
 
 TEST(CompiledNetworkInt8, PoolsUpsamplingAndConcatenation) {
-  ExpectInt8Agrees(AroundMiddle([](OnnxBuilder& n, const std::string& x) {
-    const auto [a, b] = n.Halves(x);
-    return n.ConvSilu(n.Concat({n.Upsample2(n.MaxPool(b, 5)), n.Upsample2(a)}), 16, 16, 1);
-  }), 4);
+  ExpectInt8Agrees(
+      AroundMiddle([](OnnxBuilder& n, const std::string& x) {
+        const auto [a, b] = n.Halves(x);
+        return n.ConvSilu(n.Concat({n.Upsample2(n.MaxPool(b, 5)), n.Upsample2(a)}), 16, 16, 1);
+      }),
+      4);
 }
 
 TEST(CompiledNetworkInt8, DepthwiseConvolution) {
   ExpectInt8Agrees(AroundMiddle([](OnnxBuilder& n, const std::string& x) {
-    return n.Silu(n.Conv(n.Silu(n.Conv(x, 16, 16, 5, 1, 16)), 16, 16, 1));
-  }), 5);
+                     return n.Silu(n.Conv(n.Silu(n.Conv(x, 16, 16, 5, 1, 16)), 16, 16, 1));
+                   }),
+                   5);
 }
 
 TEST(CompiledNetworkInt8, WholeDetector) {
@@ -173,7 +184,8 @@ TEST(CompiledNetworkInt8, WholeDetector) {
   TestNetworkOptions options;
   options.msf = true;
   const CompileOptions compile{64, 96, NetworkPrecision::kInt8};
-  EXPECT_LT(ErrorAgainstInterpreter(Calibrated(Parse(options), compile), compile), 0.3f);  // random weights forgive nothing
+  EXPECT_LT(ErrorAgainstInterpreter(Calibrated(Parse(options), compile), compile),
+            0.3f);  // random weights forgive nothing
 }
 
 TEST(CompiledNetworkInt8, NeedsCalibration) {

@@ -7,7 +7,8 @@
 
 namespace msf {
 
-// An axis-aligned box in pixels of the original image; x1 and y1 lie outside, so that the width is x1 - x0.
+// An axis-aligned box in pixels of the original image; x1 and y1 lie outside, so that the width is
+// x1 - x0.
 struct ImageBox {
   float x0 = 0;
   float y0 = 0;
@@ -37,8 +38,10 @@ struct Detections {
   std::vector<Detection> objects;
 };
 
-// Greedy non-maximum suppression per class: a detection is dropped when a better one of its class overlaps it by more than
-// `max_iou`. Keeps at most `max_count`, best first; equal scores keep their order.
-std::vector<Detection> SuppressOverlaps(std::vector<Detection> detections, float max_iou, size_t max_count);
+// Greedy non-maximum suppression per class: a detection is dropped when a better one of its class
+// overlaps it by more than `max_iou`. Keeps at most `max_count`, best first; equal scores keep
+// their order.
+std::vector<Detection> SuppressOverlaps(std::vector<Detection> detections, float max_iou,
+                                        size_t max_count);
 
 }  // namespace msf

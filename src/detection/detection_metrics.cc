@@ -1,11 +1,11 @@
 #include "detection/detection_metrics.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
-
-#include <fmt/format.h>
 
 #include "util/check.h"
 
@@ -23,14 +23,15 @@ struct Verdict {
   std::array<bool, kNumThresholds> right{};
 };
 
-// Verdicts on the detections of one class in one image. Every detection stands for the object that it overlaps most; of those that
-// stand for the same object well enough the strongest is right.
+// Verdicts on the detections of one class in one image. Every detection stands for the object that
+// it overlaps most; of those that stand for the same object well enough the strongest is right.
 void Judge(const ScoredImage& image, int class_id, std::vector<Verdict>& all) {
   std::vector<const Detection*> ranked;
   for (const Detection& found : image.found) {
     if (found.class_id == class_id) ranked.push_back(&found);
   }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const auto* a, const auto* b) { return a->score > b->score; });
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto* a, const auto* b) { return a->score > b->score; });
   std::vector<std::array<bool, kNumThresholds>> taken(image.truth.size());
   for (const Detection* found : ranked) {
     Verdict verdict{found->score, {}};
@@ -55,23 +56,27 @@ void Judge(const ScoredImage& image, int class_id, std::vector<Verdict>& all) {
   }
 }
 
-std::vector<OperatingPoint> Curve(const std::vector<Verdict>& verdicts, size_t level, int num_objects) {
+std::vector<OperatingPoint> Curve(const std::vector<Verdict>& verdicts, size_t level,
+                                  int num_objects) {
   std::vector<OperatingPoint> curve;
   int right = 0;
   for (size_t i = 0; i < verdicts.size(); ++i) {
     right += verdicts[i].right[level];
-    curve.push_back({verdicts[i].score, num_objects > 0 ? static_cast<double>(right) / num_objects : 0,
+    curve.push_back({verdicts[i].score,
+                     num_objects > 0 ? static_cast<double>(right) / num_objects : 0,
                      static_cast<double>(right) / static_cast<double>(i + 1)});
   }
   return curve;
 }
 
-// Precision and recall if only scores above `confidence` counted, linear between neighbouring detections.
-std::pair<double, double> AtConfidence(const std::vector<OperatingPoint>& curve, double confidence) {
+// Precision and recall if only scores above `confidence` counted, linear between neighbouring
+// detections.
+std::pair<double, double> AtConfidence(const std::vector<OperatingPoint>& curve,
+                                       double confidence) {
   if (curve.empty() || confidence > curve.front().score) return {1.0, 0.0};
   if (confidence <= curve.back().score) return {curve.back().precision, curve.back().recall};
-  const auto after = std::partition_point(curve.begin(), curve.end(),
-                                          [&](const OperatingPoint& p) { return p.score >= confidence; });
+  const auto after = std::partition_point(
+      curve.begin(), curve.end(), [&](const OperatingPoint& p) { return p.score >= confidence; });
   const OperatingPoint &a = *(after - 1), &b = *after;
   const double t = (a.score - confidence) / (a.score - b.score);
   return {a.precision + t * (b.precision - a.precision), a.recall + t * (b.recall - a.recall)};
@@ -83,7 +88,8 @@ std::vector<double> Smooth(const std::vector<double>& values, int width) {
   std::vector<double> smooth(values.size());
   for (int i = 0; i < n; ++i) {
     double sum = 0;
-    for (int k = -half; k <= half; ++k) sum += values[static_cast<size_t>(std::clamp(i + k, 0, n - 1))];
+    for (int k = -half; k <= half; ++k)
+      sum += values[static_cast<size_t>(std::clamp(i + k, 0, n - 1))];
     smooth[static_cast<size_t>(i)] = sum / (2 * half + 1);
   }
   return smooth;
@@ -108,12 +114,14 @@ ClassMetrics ScoreClass(const std::vector<ScoredImage>& images, int class_id) {
   ClassMetrics metrics;
   std::vector<Verdict> verdicts;
   for (const ScoredImage& image : images) {
-    metrics.num_objects += static_cast<int>(std::count_if(image.truth.begin(), image.truth.end(), [&](const auto& t) {
-      return t.class_id == class_id && !t.ignored;
-    }));
+    metrics.num_objects +=
+        static_cast<int>(std::count_if(image.truth.begin(), image.truth.end(), [&](const auto& t) {
+          return t.class_id == class_id && !t.ignored;
+        }));
     Judge(image, class_id, verdicts);
   }
-  std::stable_sort(verdicts.begin(), verdicts.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+  std::stable_sort(verdicts.begin(), verdicts.end(),
+                   [](const auto& a, const auto& b) { return a.score > b.score; });
   for (size_t level = 0; level < kNumThresholds; ++level) {
     std::vector<OperatingPoint> curve = Curve(verdicts, level, metrics.num_objects);
     const double ap = AveragePrecision101(curve);
@@ -137,11 +145,13 @@ double AveragePrecision101(const std::vector<OperatingPoint>& curve) {
   }
   recall.push_back(1);
   precision.push_back(0);
-  for (size_t i = precision.size() - 1; i-- > 0;) precision[i] = std::max(precision[i], precision[i + 1]);
+  for (size_t i = precision.size() - 1; i-- > 0;)
+    precision[i] = std::max(precision[i], precision[i + 1]);
   double area = 0, before = 1;
   for (int i = 0; i <= 100; ++i) {
     const double at = i / 100.0;
-    const size_t after = static_cast<size_t>(std::upper_bound(recall.begin(), recall.end(), at) - recall.begin());
+    const size_t after =
+        static_cast<size_t>(std::upper_bound(recall.begin(), recall.end(), at) - recall.begin());
     double value = precision.back();
     if (after < recall.size()) {
       const double t = (at - recall[after - 1]) / (recall[after] - recall[after - 1]);
@@ -157,7 +167,8 @@ double AveragePrecision101(const std::vector<OperatingPoint>& curve) {
   return area;
 }
 
-DetectionMetrics ComputeMetrics(const std::vector<ScoredImage>& images, int num_classes, int min_objects) {
+DetectionMetrics ComputeMetrics(const std::vector<ScoredImage>& images, int num_classes,
+                                int min_objects) {
   MSF_CHECK(min_objects >= 1, "classes without objects have no recall");
   DetectionMetrics metrics;
   for (int c = 0; c < num_classes; ++c) metrics.per_class.push_back(ScoreClass(images, c));
@@ -178,7 +189,8 @@ DetectionMetrics ComputeMetrics(const std::vector<ScoredImage>& images, int num_
   return metrics;
 }
 
-RecallAtFalseRate ComputeRecallAtFalseRate(const std::vector<ScoredImage>& images, int class_id, double false_per_image) {
+RecallAtFalseRate ComputeRecallAtFalseRate(const std::vector<ScoredImage>& images, int class_id,
+                                           double false_per_image) {
   struct Found {
     float score;
     size_t image;
@@ -189,13 +201,16 @@ RecallAtFalseRate ComputeRecallAtFalseRate(const std::vector<ScoredImage>& image
   std::vector<std::vector<bool>> used;
   for (size_t i = 0; i < images.size(); ++i) {
     used.emplace_back(images[i].truth.size(), false);
-    for (const LabeledBox& t : images[i].truth) result.num_objects += t.class_id == class_id && !t.ignored;
+    for (const LabeledBox& t : images[i].truth)
+      result.num_objects += t.class_id == class_id && !t.ignored;
     for (const Detection& d : images[i].found) {
       if (d.class_id == class_id) all.push_back({d.score, i, &d});
     }
   }
-  std::stable_sort(all.begin(), all.end(), [](const Found& a, const Found& b) { return a.score > b.score; });
-  const int allowed = static_cast<int>(std::floor(false_per_image * static_cast<double>(images.size()) + 1e-9));
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Found& a, const Found& b) { return a.score > b.score; });
+  const int allowed =
+      static_cast<int>(std::floor(false_per_image * static_cast<double>(images.size()) + 1e-9));
   int right = 0, wrong = 0;
   for (const Found& found : all) {
     const std::vector<LabeledBox>& truth = images[found.image].truth;
@@ -223,21 +238,28 @@ RecallAtFalseRate ComputeRecallAtFalseRate(const std::vector<ScoredImage>& image
     result.num_found = right;
     result.num_false = wrong;
   }
-  result.recall = result.num_objects > 0 ? static_cast<double>(result.num_found) / result.num_objects : 0;
+  result.recall =
+      result.num_objects > 0 ? static_cast<double>(result.num_found) / result.num_objects : 0;
   return result;
 }
 
-std::string FormatMetrics(const DetectionMetrics& metrics, const std::vector<std::string>& class_names) {
-  std::string text = fmt::format("{:<16}{:>9}{:>8}{:>8}{:>8}{:>10}\n", "class", "objects", "P", "R", "mAP50", "mAP50-95");
-  const auto row = [&](const std::string& name, int objects, double p, double r, double ap50, double ap) {
-    text += fmt::format("{:<16}{:>9}{:>8.3f}{:>8.3f}{:>8.3f}{:>10.3f}\n", name, objects, p, r, ap50, ap);
+std::string FormatMetrics(const DetectionMetrics& metrics,
+                          const std::vector<std::string>& class_names) {
+  std::string text = fmt::format("{:<16}{:>9}{:>8}{:>8}{:>8}{:>10}\n", "class", "objects", "P", "R",
+                                 "mAP50", "mAP50-95");
+  const auto row = [&](const std::string& name, int objects, double p, double r, double ap50,
+                       double ap) {
+    text += fmt::format("{:<16}{:>9}{:>8.3f}{:>8.3f}{:>8.3f}{:>10.3f}\n", name, objects, p, r, ap50,
+                        ap);
   };
   int objects = 0;
   for (const ClassMetrics& c : metrics.per_class) objects += c.num_objects;
-  row(fmt::format("mean of {}", metrics.num_classes), objects, metrics.precision, metrics.recall, metrics.map50, metrics.map50_95);
+  row(fmt::format("mean of {}", metrics.num_classes), objects, metrics.precision, metrics.recall,
+      metrics.map50, metrics.map50_95);
   for (size_t i = 0; i < metrics.per_class.size(); ++i) {
     const ClassMetrics& c = metrics.per_class[i];
-    if (c.num_objects > 0) row(class_names[i], c.num_objects, c.precision, c.recall, c.ap50, c.ap50_95);
+    if (c.num_objects > 0)
+      row(class_names[i], c.num_objects, c.precision, c.recall, c.ap50, c.ap50_95);
   }
   return text;
 }

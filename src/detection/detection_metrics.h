@@ -32,8 +32,8 @@ struct ClassMetrics {
   int num_objects = 0;
   double precision = 0;  // at the confidence of DetectionMetrics
   double recall = 0;
-  double ap50 = 0;       // average precision at IoU 0.50
-  double ap50_95 = 0;    // mean over IoU 0.50, 0.55, ..., 0.95
+  double ap50 = 0;                    // average precision at IoU 0.50
+  double ap50_95 = 0;                 // mean over IoU 0.50, 0.55, ..., 0.95
   std::vector<OperatingPoint> curve;  // at IoU 0.50, falling score
 };
 
@@ -48,17 +48,19 @@ struct DetectionMetrics {
   int num_classes = 0;  // of them
 };
 
-// Within an image and class a detection stands for the object it overlaps most, and of those that stand for one object the strongest is
-// right. Average precision: area under the precision envelope, sampled at
-// 101 recalls (COCO). Precision and recall: at the one confidence of a grid of 1000 that maximises the mean F1 score (moving
-// average over a tenth of the grid). `min_objects` is at least 1.
-DetectionMetrics ComputeMetrics(const std::vector<ScoredImage>& images, int num_classes, int min_objects);
+// Within an image and class a detection stands for the object it overlaps most, and of those that
+// stand for one object the strongest is right. Average precision: area under the precision
+// envelope, sampled at 101 recalls (COCO). Precision and recall: at the one confidence of a grid of
+// 1000 that maximises the mean F1 score (moving average over a tenth of the grid). `min_objects` is
+// at least 1.
+DetectionMetrics ComputeMetrics(const std::vector<ScoredImage>& images, int num_classes,
+                                int min_objects);
 
 // Area under the envelope of a curve, by trapezia between the recalls 0, 0.01, ..., 1.
 double AveragePrecision101(const std::vector<OperatingPoint>& curve);
 
-// Recall of one class when at most `false_per_image` detections per image are wrong (IoU >= 0.5; strongest first, each object is found
-// once), and the score at which that is reached.
+// Recall of one class when at most `false_per_image` detections per image are wrong (IoU >= 0.5;
+// strongest first, each object is found once), and the score at which that is reached.
 struct RecallAtFalseRate {
   double recall = 0;
   double score = 1;
@@ -66,9 +68,11 @@ struct RecallAtFalseRate {
   int num_found = 0;
   int num_false = 0;
 };
-RecallAtFalseRate ComputeRecallAtFalseRate(const std::vector<ScoredImage>& images, int class_id, double false_per_image);
+RecallAtFalseRate ComputeRecallAtFalseRate(const std::vector<ScoredImage>& images, int class_id,
+                                           double false_per_image);
 
 // A table for people.
-std::string FormatMetrics(const DetectionMetrics& metrics, const std::vector<std::string>& class_names);
+std::string FormatMetrics(const DetectionMetrics& metrics,
+                          const std::vector<std::string>& class_names);
 
 }  // namespace msf

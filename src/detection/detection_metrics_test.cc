@@ -7,7 +7,9 @@ namespace {
 
 constexpr ImageBox kA{0, 0, 10, 10}, kB{20, 0, 30, 10}, kFar{50, 50, 60, 60};
 
-Detection Found(float score, const ImageBox& box, int class_id = 0) { return {class_id, score, box}; }
+Detection Found(float score, const ImageBox& box, int class_id = 0) {
+  return {class_id, score, box};
+}
 
 TEST(IntersectionOverUnion, OfShiftedAndEmptyBoxes) {
   EXPECT_FLOAT_EQ(IntersectionOverUnion(kA, kA), 1.0f);
@@ -17,8 +19,10 @@ TEST(IntersectionOverUnion, OfShiftedAndEmptyBoxes) {
 }
 
 TEST(SuppressOverlaps, KeepsTheBestOfItsClass) {
-  const std::vector<Detection> kept = SuppressOverlaps(
-      {Found(0.5f, {1, 0, 11, 10}), Found(0.9f, kA), Found(0.4f, kA, 1), Found(0.6f, kB), Found(0.1f, kFar)}, 0.7f, 3);
+  const std::vector<Detection> kept =
+      SuppressOverlaps({Found(0.5f, {1, 0, 11, 10}), Found(0.9f, kA), Found(0.4f, kA, 1),
+                        Found(0.6f, kB), Found(0.1f, kFar)},
+                       0.7f, 3);
   ASSERT_EQ(kept.size(), 3u);
   EXPECT_FLOAT_EQ(kept[0].score, 0.9f);
   EXPECT_FLOAT_EQ(kept[1].score, 0.6f);
@@ -32,9 +36,11 @@ std::vector<ScoredImage> TwoOfThree() {
 
 TEST(ComputeMetrics, AveragePrecisionByHand) {
   const DetectionMetrics metrics = ComputeMetrics(TwoOfThree(), 1, 1);
-  // Recall 0.5, 0.5, 1; envelope of the precision 1, 2/3, 2/3. Between recall 0 and 0.5 it is 1; at 0.5 the last point with that
-  // recall counts (2/3), and it stays so until the end, where it falls to 0 within the last sample.
-  const double expected = 0.49 * 1 + 0.01 * (1 + 2.0 / 3) / 2 + 0.49 * 2 / 3 + 0.01 * (2.0 / 3 + 0) / 2;
+  // Recall 0.5, 0.5, 1; envelope of the precision 1, 2/3, 2/3. Between recall 0 and 0.5 it is 1; at
+  // 0.5 the last point with that recall counts (2/3), and it stays so until the end, where it falls
+  // to 0 within the last sample.
+  const double expected =
+      0.49 * 1 + 0.01 * (1 + 2.0 / 3) / 2 + 0.49 * 2 / 3 + 0.01 * (2.0 / 3 + 0) / 2;
   EXPECT_NEAR(metrics.map50, expected, 1e-9);
   EXPECT_NEAR(metrics.map50_95, expected, 1e-9);  // the boxes fit exactly
   EXPECT_EQ(metrics.num_classes, 1);
@@ -49,7 +55,8 @@ TEST(ComputeMetrics, PreciseBoxesCountAtHighThresholds) {
 }
 
 TEST(ComputeMetrics, TheStrongestOfTwoOnOneObjectIsRight) {
-  const std::vector<ScoredImage> images{{{{0, kA}}, {Found(0.6f, kA), Found(0.9f, {1, 0, 11, 10})}}};
+  const std::vector<ScoredImage> images{
+      {{{0, kA}}, {Found(0.6f, kA), Found(0.9f, {1, 0, 11, 10})}}};
   const ClassMetrics c = ComputeMetrics(images, 1, 1).per_class[0];
   ASSERT_EQ(c.curve.size(), 2u);
   EXPECT_DOUBLE_EQ(c.curve[0].precision, 1.0);
@@ -59,8 +66,10 @@ TEST(ComputeMetrics, TheStrongestOfTwoOnOneObjectIsRight) {
 TEST(ComputeMetrics, OperatingPointMaximisesF1) {
   // Right down to 0.6, then wrong ones only: the best confidence lies between 0.3 and 0.6.
   std::vector<ScoredImage> images;
-  for (int i = 0; i < 4; ++i) images.push_back({{{0, kA}}, {Found(0.6f + 0.1f * static_cast<float>(i), kA)}});
-  for (int i = 0; i < 6; ++i) images.push_back({{}, {Found(0.3f - 0.01f * static_cast<float>(i), kFar)}});
+  for (int i = 0; i < 4; ++i)
+    images.push_back({{{0, kA}}, {Found(0.6f + 0.1f * static_cast<float>(i), kA)}});
+  for (int i = 0; i < 6; ++i)
+    images.push_back({{}, {Found(0.3f - 0.01f * static_cast<float>(i), kFar)}});
   const DetectionMetrics metrics = ComputeMetrics(images, 1, 1);
   EXPECT_GT(metrics.confidence, 0.3);
   EXPECT_LT(metrics.confidence, 0.6);
@@ -73,7 +82,8 @@ TEST(ComputeMetrics, IgnoredObjectsAndRareClassesDoNotCount) {
       {{{0, kA}, {0, kB, true}, {1, kFar}}, {Found(0.9f, kB), Found(0.8f, kA)}}};
   const DetectionMetrics metrics = ComputeMetrics(images, 2, 1);
   EXPECT_EQ(metrics.per_class[0].num_objects, 1);
-  EXPECT_NEAR(metrics.per_class[0].ap50, 0.995, 1e-9);  // the detection on the ignored one is no error
+  EXPECT_NEAR(metrics.per_class[0].ap50, 0.995,
+              1e-9);  // the detection on the ignored one is no error
   EXPECT_EQ(metrics.per_class[1].ap50, 0);
   EXPECT_NEAR(metrics.map50, 0.995 / 2, 1e-9);
   EXPECT_EQ(ComputeMetrics(images, 2, 2).num_classes, 0);
@@ -93,7 +103,8 @@ TEST(ComputeRecallAtFalseRate, StopsAtTheAllowedErrors) {
 }
 
 TEST(ComputeRecallAtFalseRate, ASecondBoxOnAnObjectIsWrong) {
-  const std::vector<ScoredImage> images{{{{0, kA}, {0, kB}}, {Found(0.9f, kA), Found(0.8f, {1, 0, 11, 10}), Found(0.7f, kB)}}};
+  const std::vector<ScoredImage> images{
+      {{{0, kA}, {0, kB}}, {Found(0.9f, kA), Found(0.8f, {1, 0, 11, 10}), Found(0.7f, kB)}}};
   EXPECT_DOUBLE_EQ(ComputeRecallAtFalseRate(images, 0, 0.5).recall, 0.5);
   EXPECT_DOUBLE_EQ(ComputeRecallAtFalseRate(images, 0, 1.0).recall, 1.0);
 }

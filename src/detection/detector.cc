@@ -2,25 +2,30 @@
 
 #include <fmt/format.h>
 
-#include "detection/opencv_detector.h"
 #include "detection/onednn_detector.h"
+#include "detection/opencv_detector.h"
 
 namespace msf {
 
 Status DetectorOptions::Check() const {
   const auto size_ok = [](int size) { return size >= 0 && size <= 4096 && size % 32 == 0; };
   if (!size_ok(width) || !size_ok(height)) {
-    return Status::Error(fmt::format("the detector's input of {}x{} is not a multiple of 32 up to 4096", width, height));
+    return Status::Error(fmt::format(
+        "the detector's input of {}x{} is not a multiple of 32 up to 4096", width, height));
   }
-  if ((width == 0) != (height == 0)) return Status::Error("give both width and height of the detector's input, or neither");
+  if ((width == 0) != (height == 0))
+    return Status::Error("give both width and height of the detector's input, or neither");
   if (backend != "onednn" && backend != "opencv") {
     return Status::Error("detector backend '" + backend + "' is not known; use onednn or opencv");
   }
   if (precision != "auto" && precision != "fp32" && precision != "bf16" && precision != "int8") {
-    return Status::Error("detector precision '" + precision + "' is not known; use auto, fp32, bf16 or int8");
+    return Status::Error("detector precision '" + precision +
+                         "' is not known; use auto, fp32, bf16 or int8");
   }
-  if (!(confidence > 0 && confidence < 1)) return Status::Error("the detector's confidence must lie between 0 and 1");
-  if (!(max_iou > 0 && max_iou <= 1)) return Status::Error("the detector's max_iou must lie between 0 and 1");
+  if (!(confidence > 0 && confidence < 1))
+    return Status::Error("the detector's confidence must lie between 0 and 1");
+  if (!(max_iou > 0 && max_iou <= 1))
+    return Status::Error("the detector's max_iou must lie between 0 and 1");
   if (max_detections < 1) return Status::Error("the detector's max_detections must be at least 1");
   if (threads < 1) return Status::Error("the detector needs at least one thread");
   return Status::Ok();
@@ -38,7 +43,8 @@ StatusOr<std::unique_ptr<Detector>> MakeDetector(const DetectorOptions& options)
   MSF_RETURN_IF_ERROR(options.Check());
   StatusOr<std::filesystem::path> model = FindModel(options.model);
   if (!model.ok()) return model.status();
-  return options.backend == "opencv" ? MakeOpenCvDetector(options, *model) : MakeOneDnnDetector(options, *model);
+  return options.backend == "opencv" ? MakeOpenCvDetector(options, *model)
+                                     : MakeOneDnnDetector(options, *model);
 }
 
 }  // namespace msf

@@ -3,10 +3,9 @@
 
 #include <filesystem>
 #include <memory>
+#include <opencv2/core/mat.hpp>
 #include <string>
 #include <vector>
-
-#include <opencv2/core/mat.hpp>
 
 #include "detection/detection.h"
 #include "sensor/rgbd_frame.h"
@@ -31,15 +30,21 @@ struct DetectorOptions {
   void Visit(Visitor& visit) {
     visit("model", model, "ONNX file, or the name of one that comes with MSF-SLAM");
     visit("backend", backend, "onednn, or opencv for networks that onednn does not read");
-    visit("precision", precision, "auto, fp32, bf16 or int8 (a model from 'detector quantize'); auto is the fastest one");
-    visit("width", width, "input width of the network, pixels, a multiple of 32; 0: the model's own, or 416");
-    visit("height", height, "input height of the network, pixels, a multiple of 32; 0: the model's own, or 320");
+    visit("precision", precision,
+          "auto, fp32, bf16 or int8 (a model from 'detector quantize'); auto is the fastest one");
+    visit("width", width,
+          "input width of the network, pixels, a multiple of 32; 0: the model's own, or 416");
+    visit("height", height,
+          "input height of the network, pixels, a multiple of 32; 0: the model's own, or 320");
     visit("confidence", confidence, "least score of a detection, 0 to 1");
-    visit("max_iou", max_iou, "overlap above which the weaker of two detections of one class is dropped");
+    visit("max_iou", max_iou,
+          "overlap above which the weaker of two detections of one class is dropped");
     visit("max_detections", max_detections, "most detections per image");
-    visit("every_class", every_class, "report a box once for each class that reaches the confidence (evaluation)");
+    visit("every_class", every_class,
+          "report a box once for each class that reaches the confidence (evaluation)");
     visit("classes", classes, "file with one class name per line; empty: the names in the model");
-    visit("threads", threads, "threads of the network; more than one pays only on an otherwise idle machine");
+    visit("threads", threads,
+          "threads of the network; more than one pays only on an otherwise idle machine");
   }
   Status Check() const;
 };
@@ -49,7 +54,8 @@ class Detector {
  public:
   virtual ~Detector() = default;
 
-  // `image`: 8-bit BGR or grey, any size. Boxes in its pixels. `frame` and `time_s` of the result are not set.
+  // `image`: 8-bit BGR or grey, any size. Boxes in its pixels. `frame` and `time_s` of the result
+  // are not set.
   virtual StatusOr<Detections> DetectInImage(const cv::Mat& image) = 0;
 
   // The colour image of a frame; the result carries the frame's id and time.
@@ -66,7 +72,9 @@ class Detector {
 
  protected:
   Detector(std::vector<std::string> class_names, cv::Size input_size, std::string description)
-      : class_names_(std::move(class_names)), input_size_(input_size), description_(std::move(description)) {}
+      : class_names_(std::move(class_names)),
+        input_size_(input_size),
+        description_(std::move(description)) {}
 
  private:
   std::vector<std::string> class_names_;
@@ -77,8 +85,9 @@ class Detector {
 // Loads the model and prepares it. An error names the file and what to do.
 StatusOr<std::unique_ptr<Detector>> MakeDetector(const DetectorOptions& options);
 
-// The path of a model: itself when it is a file; else looked for by name in $MSF_SLAM_DATA/models, in share/msf_slam/models of the
-// installation that the running program belongs to, and in the source tree it was built from. The error lists these places.
+// The path of a model: itself when it is a file; else looked for by name in $MSF_SLAM_DATA/models,
+// in share/msf_slam/models of the installation that the running program belongs to, and in the
+// source tree it was built from. The error lists these places.
 StatusOr<std::filesystem::path> FindModel(const std::string& name);
 
 }  // namespace msf

@@ -1,9 +1,9 @@
 #include "detection/detector.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <fstream>
-
-#include <gtest/gtest.h>
 
 #include "detection/class_names.h"
 #include "detection/head_decoder.h"
@@ -26,7 +26,8 @@ cv::Mat Picture(int width, int height) {
   cv::Mat picture(height, width, CV_8UC3);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      picture.at<cv::Vec3b>(y, x) = {static_cast<uchar>(x * 2), static_cast<uchar>(y * 3), static_cast<uchar>(x ^ y)};
+      picture.at<cv::Vec3b>(y, x) = {static_cast<uchar>(x * 2), static_cast<uchar>(y * 3),
+                                     static_cast<uchar>(x ^ y)};
     }
   }
   return picture;
@@ -48,19 +49,23 @@ TEST(Letterbox, CentresAndMapsBoxesBack) {
 }
 
 TEST(ClassNames, InAllForms) {
-  EXPECT_EQ(ParseClassNames(R"(["person", "dog"])").value(), (std::vector<std::string>{"person", "dog"}));
+  EXPECT_EQ(ParseClassNames(R"(["person", "dog"])").value(),
+            (std::vector<std::string>{"person", "dog"}));
   EXPECT_EQ(ParseClassNames("{0: 'person', 1: \"traffic light\"}").value(),
             (std::vector<std::string>{"person", "traffic light"}));
-  for (const char* damaged : {"", "{0: 'person'", "{1: 'person'}", "{0: person}", "[1, 2]", "{0: 'a' 1: 'b'}", "{0"}) {
+  for (const char* damaged :
+       {"", "{0: 'person'", "{1: 'person'}", "{0: person}", "[1, 2]", "{0: 'a' 1: 'b'}", "{0"}) {
     EXPECT_FALSE(ParseClassNames(damaged).ok()) << damaged;
   }
   EXPECT_EQ(ReadClassNames(Write("names.txt", "person\r\ndog\n\n")).value().size(), 2u);
   EXPECT_FALSE(ReadClassNames(Write("gap.txt", "person\n\ndog\n")).ok());
   EXPECT_FALSE(ReadClassNames(Write("empty.txt", "\n")).ok());
-  EXPECT_EQ(MatchClasses({"airplane", "Sofa", "zebra"}, {"sofa", "aeroplane"}), (std::vector<int>{1, 0, -1}));
+  EXPECT_EQ(MatchClasses({"airplane", "Sofa", "zebra"}, {"sofa", "aeroplane"}),
+            (std::vector<int>{1, 0, -1}));
 }
 
-// Raw heads for a 32 x 32 image: 4 x 4, 2 x 2 and 1 cells. All sides point at bin `bin`, scores are low.
+// Raw heads for a 32 x 32 image: 4 x 4, 2 x 2 and 1 cells. All sides point at bin `bin`, scores are
+// low.
 struct Heads {
   explicit Heads(size_t bin) {
     for (const int64_t stride : {8, 16, 32}) {
@@ -110,7 +115,8 @@ TEST(HeadDecoder, SingleOutputByHand) {
   const float box[] = {20, 30, 8, 4, 0.75f};
   for (size_t i = 0; i < 5; ++i) data[i * 6 + 3] = box[i];
   const std::vector<NetworkOutput> outputs{{"output0", {1, 5, 6}, false, data.data()}};
-  const std::vector<Detection> found = HeadDecoder::Make(outputs, "test").value().Decode(outputs, 0.5f, false);
+  const std::vector<Detection> found =
+      HeadDecoder::Make(outputs, "test").value().Decode(outputs, 0.5f, false);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_FLOAT_EQ(found[0].score, 0.75f);
   EXPECT_FLOAT_EQ(found[0].box.x0, 16);
@@ -118,7 +124,8 @@ TEST(HeadDecoder, SingleOutputByHand) {
 }
 
 TEST(HeadDecoder, RefusesOtherNetworks) {
-  const StatusOr<HeadDecoder> decoder = HeadDecoder::Make({{"logits", {1, 1000}, false, nullptr}}, "net.onnx");
+  const StatusOr<HeadDecoder> decoder =
+      HeadDecoder::Make({{"logits", {1, 1000}, false, nullptr}}, "net.onnx");
   ASSERT_FALSE(decoder.ok());
   EXPECT_NE(decoder.message().find("net.onnx"), std::string::npos);
   EXPECT_NE(decoder.message().find("logits 1x1000"), std::string::npos);
@@ -143,7 +150,8 @@ void ExpectSameDetections(const fs::path& model, DetectorOptions options) {
   const auto onednn = MakeDetector(options).value();
   options.backend = "opencv";
   const auto opencv = MakeDetector(options).value();
-  const Detections a = onednn->DetectInImage(Picture(120, 70)).value(), b = opencv->DetectInImage(Picture(120, 70)).value();
+  const Detections a = onednn->DetectInImage(Picture(120, 70)).value(),
+                   b = opencv->DetectInImage(Picture(120, 70)).value();
   ASSERT_GT(a.objects.size(), 3u) << "random weights found nothing in " << model;
   ASSERT_EQ(a.objects.size(), b.objects.size());
   for (const Detection& d : a.objects) {  // equal scores may come in another order
@@ -179,7 +187,8 @@ TEST(Detector, ReadsACommonExportWithClassesFile) {
   EXPECT_TRUE(detector->DetectInImage(Picture(50, 50)).ok());
   options.width = 128;
   options.height = 64;
-  EXPECT_NE(MakeDetector(options).message().find("exported for images of 96x64 only"), std::string::npos);
+  EXPECT_NE(MakeDetector(options).message().find("exported for images of 96x64 only"),
+            std::string::npos);
 }
 
 TEST(Detector, SaysWhatIsWrong) {
@@ -187,7 +196,8 @@ TEST(Detector, SaysWhatIsWrong) {
   network.builder().Metadata("names", R"(["person", "dog"])");
   const fs::path model = Write("two_names.onnx", network.builder().Bytes());
   EXPECT_NE(MakeDetector(OptionsFor(model)).message().find("3 classes but"), std::string::npos);
-  EXPECT_NE(MakeDetector(OptionsFor("nowhere.onnx")).message().find("nowhere.onnx"), std::string::npos);
+  EXPECT_NE(MakeDetector(OptionsFor("nowhere.onnx")).message().find("nowhere.onnx"),
+            std::string::npos);
   DetectorOptions options = OptionsFor(model);
   options.width = 100;
   EXPECT_NE(MakeDetector(options).message().find("multiple of 32"), std::string::npos);

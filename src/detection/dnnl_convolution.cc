@@ -1,8 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
-
 #include <dnnl.hpp>
+#include <unordered_map>
 
 #include "detection/column_folding.h"
 #include "detection/dnnl_steps.h"
@@ -54,9 +53,12 @@ class PostOps {
     if (e.activation == Activation::kNone) return;
     Flush();
     switch (e.activation) {
-      case Activation::kSilu: return Append(dnnl::algorithm::eltwise_swish, 1);
-      case Activation::kSigmoid: return Append(dnnl::algorithm::eltwise_logistic, 0);
-      default: return Append(dnnl::algorithm::eltwise_relu, e.alpha);
+      case Activation::kSilu:
+        return Append(dnnl::algorithm::eltwise_swish, 1);
+      case Activation::kSigmoid:
+        return Append(dnnl::algorithm::eltwise_logistic, 0);
+      default:
+        return Append(dnnl::algorithm::eltwise_relu, e.alpha);
     }
   }
 
@@ -74,9 +76,12 @@ class PostOps {
   const std::vector<std::pair<int, memory>>& operands() const { return operands_; }
 
  private:
-  void Append(dnnl::algorithm algorithm, float alpha) { ops_.append_eltwise(1, algorithm, alpha, 0); }
+  void Append(dnnl::algorithm algorithm, float alpha) {
+    ops_.append_eltwise(1, algorithm, alpha, 0);
+  }
   void Flush() {
-    if (scale_ != 1 || shift_ != 0) ops_.append_eltwise(1, dnnl::algorithm::eltwise_linear, scale_, shift_);
+    if (scale_ != 1 || shift_ != 0)
+      ops_.append_eltwise(1, dnnl::algorithm::eltwise_linear, scale_, shift_);
     scale_ = 1;
     shift_ = 0;
   }
@@ -88,7 +93,8 @@ class PostOps {
 
 class ConvolutionStep : public Step {
  public:
-  ConvolutionStep(const ConvolutionSpec& spec, const StepMemory& buffers) : spec_(spec), stream_(CpuEngine()) {
+  ConvolutionStep(const ConvolutionSpec& spec, const StepMemory& buffers)
+      : spec_(spec), stream_(CpuEngine()) {
     const dnnl::engine& engine = CpuEngine();
     const bool int8 = spec.compute == NumberFormat::kUint8;
     const memory::desc source = ImageDesc(spec.input_shape, spec.input.format);
@@ -108,9 +114,9 @@ class ConvolutionStep : public Step {
     const memory::desc weights(WeightDims(), type, memory::format_tag::any);
     const memory::desc bias({spec.output_shape[1]}, memory::data_type::f32, memory::format_tag::a);
     const dnnl::convolution_forward::desc desc(
-        dnnl::prop_kind::forward_inference, dnnl::algorithm::convolution_direct, source, weights, bias, target,
-        {w.stride[0], w.stride[1]}, {w.dilation[0] - 1, w.dilation[1] - 1}, {w.pad_begin[0], w.pad_begin[1]},
-        PadEnd(w, spec.input_shape));
+        dnnl::prop_kind::forward_inference, dnnl::algorithm::convolution_direct, source, weights,
+        bias, target, {w.stride[0], w.stride[1]}, {w.dilation[0] - 1, w.dilation[1] - 1},
+        {w.pad_begin[0], w.pad_begin[1]}, PadEnd(w, spec.input_shape));
     const dnnl::convolution_forward::primitive_desc chosen(desc, attributes, engine);
     primitive_ = dnnl::convolution_forward(chosen);
     scratch_ = memory(chosen.scratchpad_desc(), engine, nullptr);
@@ -131,7 +137,9 @@ class ConvolutionStep : public Step {
     return Status::Ok();
   }
   size_t ScratchBytes() const override { return scratch_.get_desc().get_size(); }
-  void SetScratch(void* scratch) override { arguments_.at(DNNL_ARG_SCRATCHPAD).set_data_handle(scratch); }
+  void SetScratch(void* scratch) override {
+    arguments_.at(DNNL_ARG_SCRATCHPAD).set_data_handle(scratch);
+  }
 
  private:
   bool Padded() const {
@@ -147,7 +155,9 @@ class ConvolutionStep : public Step {
 
   // A vector with one number per output channel.
   memory ChannelVector(const std::vector<float>& values) const {
-    memory vector({{1, static_cast<int64_t>(values.size()), 1, 1}, memory::data_type::f32, memory::format_tag::nchw},
+    memory vector({{1, static_cast<int64_t>(values.size()), 1, 1},
+                   memory::data_type::f32,
+                   memory::format_tag::nchw},
                   CpuEngine());
     std::copy(values.begin(), values.end(), static_cast<float*>(vector.get_data_handle()));
     return vector;
@@ -157,7 +167,8 @@ class ConvolutionStep : public Step {
     const Epilogue& e = spec_.epilogue;
     memory addend;
     if (e.addend != kNoValue) {
-      addend = memory(ImageDesc(spec_.output_shape, spec_.addend.format), CpuEngine(), buffers.addend);
+      addend =
+          memory(ImageDesc(spec_.output_shape, spec_.addend.format), CpuEngine(), buffers.addend);
     }
     if (addend && e.add_first) ops.Binary(dnnl::algorithm::binary_add, addend);
     if (!e.scale.empty()) ops.Binary(dnnl::algorithm::binary_mul, ChannelVector(e.scale));
@@ -173,7 +184,8 @@ class ConvolutionStep : public Step {
     std::vector<float> scales;
     for (const float scale : quantized.scales) scales.push_back(scale * spec_.input.scale);
     attributes.set_output_scales(1 << 1, scales);
-    // Where nothing is padded the zero point is a constant that the bias takes up, which leaves oneDNN more implementations.
+    // Where nothing is padded the zero point is a constant that the bias takes up, which leaves
+    // oneDNN more implementations.
     if (Padded() && spec_.input.zero_point != 0) {
       attributes.set_zero_points(DNNL_ARG_SRC, 0, {spec_.input.zero_point});
     }
@@ -183,8 +195,10 @@ class ConvolutionStep : public Step {
     const dnnl::engine& engine = CpuEngine();
     const bool int8 = !quantized.values.empty();
     const auto tag = spec_.group == 1 ? memory::format_tag::oihw : memory::format_tag::goihw;
-    const memory::desc plain(WeightDims(), int8 ? memory::data_type::s8 : memory::data_type::f32, tag);
-    const void* values = int8 ? static_cast<const void*>(quantized.values.data()) : spec_.weights->floats.data();
+    const memory::desc plain(WeightDims(), int8 ? memory::data_type::s8 : memory::data_type::f32,
+                             tag);
+    const void* values =
+        int8 ? static_cast<const void*>(quantized.values.data()) : spec_.weights->floats.data();
     memory from(plain, engine, const_cast<void*>(values));  // read only
     memory ordered(wanted, engine);
     dnnl::reorder(from, ordered).execute(stream_, from, ordered);
@@ -200,7 +214,8 @@ class ConvolutionStep : public Step {
       bias[c] /= quantized.scales[c] * spec_.input.scale;
       if (!Padded()) bias[c] -= static_cast<float>(spec_.input.zero_point) * quantized.sums[c];
     }
-    memory result({{spec_.output_shape[1]}, memory::data_type::f32, memory::format_tag::a}, CpuEngine());
+    memory result({{spec_.output_shape[1]}, memory::data_type::f32, memory::format_tag::a},
+                  CpuEngine());
     std::copy(bias.begin(), bias.end(), static_cast<float*>(result.get_data_handle()));
     return result;
   }
@@ -223,9 +238,12 @@ std::unique_ptr<Step> MakeConvolutionStep(const ConvolutionSpec& spec, const Ste
 
 bool CanWrite(NumberFormat compute, NumberFormat output) {
   switch (compute) {
-    case NumberFormat::kFloat32: return output == NumberFormat::kFloat32;
-    case NumberFormat::kBfloat16: return output != NumberFormat::kUint8;
-    case NumberFormat::kUint8: return output != NumberFormat::kBfloat16 || HasFastBfloat16();
+    case NumberFormat::kFloat32:
+      return output == NumberFormat::kFloat32;
+    case NumberFormat::kBfloat16:
+      return output != NumberFormat::kUint8;
+    case NumberFormat::kUint8:
+      return output != NumberFormat::kBfloat16 || HasFastBfloat16();
   }
   return false;
 }

@@ -15,9 +15,9 @@ class PoolStep : public Step {
     const Window& w = spec.window;
     const auto algorithm =
         spec.maximum ? dnnl::algorithm::pooling_max : dnnl::algorithm::pooling_avg_exclude_padding;
-    const dnnl::pooling_forward::desc desc(dnnl::prop_kind::forward_inference, algorithm, source, target,
-                                           {w.stride[0], w.stride[1]}, {w.kernel[0], w.kernel[1]},
-                                           {w.pad_begin[0], w.pad_begin[1]}, PadEnd(w, spec.input_shape));
+    const dnnl::pooling_forward::desc desc(
+        dnnl::prop_kind::forward_inference, algorithm, source, target, {w.stride[0], w.stride[1]},
+        {w.kernel[0], w.kernel[1]}, {w.pad_begin[0], w.pad_begin[1]}, PadEnd(w, spec.input_shape));
     dnnl::primitive_attr attributes;
     attributes.set_scratchpad_mode(dnnl::scratchpad_mode::user);
     const dnnl::pooling_forward::primitive_desc chosen(desc, attributes, engine);
@@ -33,7 +33,9 @@ class PoolStep : public Step {
     return Status::Ok();
   }
   size_t ScratchBytes() const override { return scratch_bytes_; }
-  void SetScratch(void* scratch) override { arguments_.at(DNNL_ARG_SCRATCHPAD).set_data_handle(scratch); }
+  void SetScratch(void* scratch) override {
+    arguments_.at(DNNL_ARG_SCRATCHPAD).set_data_handle(scratch);
+  }
 
  private:
   dnnl::stream stream_;

@@ -1,4 +1,5 @@
-// The operators that oneDNN computes: convolutions and pools on single images that lie channels last.
+// The operators that oneDNN computes: convolutions and pools on single images that lie channels
+// last.
 #pragma once
 
 #include <memory>
@@ -11,8 +12,9 @@
 
 namespace msf {
 
-// A convolution with its epilogue. `compute` is the format of the multiplications: kUint8 means 8-bit inputs with 8-bit
-// weights that have one scale per output channel; the input must then be stored as kUint8, else in `compute` itself. The addend is never kUint8.
+// A convolution with its epilogue. `compute` is the format of the multiplications: kUint8 means
+// 8-bit inputs with 8-bit weights that have one scale per output channel; the input must then be
+// stored as kUint8, else in `compute` itself. The addend is never kUint8.
 struct ConvolutionSpec {
   Shape input_shape;
   Shape output_shape;
@@ -40,12 +42,13 @@ struct StepMemory {
   void* output = nullptr;
 };
 
-// Prepare an operator: they choose and generate its code and bring the weights into the order it wants. They throw dnnl::error (a
-// std::exception) when oneDNN has no implementation.
+// Prepare an operator: they choose and generate its code and bring the weights into the order it
+// wants. They throw dnnl::error (a std::exception) when oneDNN has no implementation.
 std::unique_ptr<Step> MakeConvolutionStep(const ConvolutionSpec& spec, const StepMemory& memory);
 std::unique_ptr<Step> MakePoolStep(const PoolSpec& spec, const StepMemory& memory);
 
-// The output format of a convolution that computes in `compute`: whether oneDNN can write `output` directly.
+// The output format of a convolution that computes in `compute`: whether oneDNN can write `output`
+// directly.
 bool CanWrite(NumberFormat compute, NumberFormat output);
 
 // What this processor computes fast.

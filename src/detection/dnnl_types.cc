@@ -11,9 +11,12 @@ const dnnl::engine& CpuEngine() {
 
 dnnl::memory::data_type DataType(NumberFormat format) {
   switch (format) {
-    case NumberFormat::kFloat32: return dnnl::memory::data_type::f32;
-    case NumberFormat::kBfloat16: return dnnl::memory::data_type::bf16;
-    case NumberFormat::kUint8: return dnnl::memory::data_type::u8;
+    case NumberFormat::kFloat32:
+      return dnnl::memory::data_type::f32;
+    case NumberFormat::kBfloat16:
+      return dnnl::memory::data_type::bf16;
+    case NumberFormat::kUint8:
+      return dnnl::memory::data_type::u8;
   }
   return dnnl::memory::data_type::undef;
 }
@@ -35,8 +38,10 @@ dnnl::memory::dims PadEnd(const Window& window, const Shape& input) {
 bool HasFastBfloat16() {
   switch (dnnl::get_effective_cpu_isa()) {
     case dnnl::cpu_isa::avx512_core_bf16:
-    case dnnl::cpu_isa::avx512_core_amx: return true;
-    default: return false;
+    case dnnl::cpu_isa::avx512_core_amx:
+      return true;
+    default:
+      return false;
   }
 }
 
@@ -47,8 +52,10 @@ bool HasFastInt8() {
     case dnnl::cpu_isa::avx2_vnni:
     case dnnl::cpu_isa::avx512_core_vnni:
     case dnnl::cpu_isa::avx512_core_bf16:
-    case dnnl::cpu_isa::avx512_core_amx: return true;
-    default: return false;
+    case dnnl::cpu_isa::avx512_core_amx:
+      return true;
+    default:
+      return false;
   }
 }
 

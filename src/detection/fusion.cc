@@ -21,7 +21,8 @@ void RemoveOperatorsWithoutEffect(GraphRewriter& rewriter) {
     if (!copies || (node.op == "Concat" && node.inputs.size() != 1)) continue;
     const Value& from = graph.value(node.inputs[0]);
     const Value& to = graph.value(node.outputs[0]);
-    if (from.shape != to.shape || from.type != to.type || IsGraphOutput(graph, node.outputs[0])) continue;
+    if (from.shape != to.shape || from.type != to.type || IsGraphOutput(graph, node.outputs[0]))
+      continue;
     rewriter.ReplaceUses(node.outputs[0], node.inputs[0]);
     rewriter.Remove(i);
   }
@@ -43,7 +44,8 @@ bool IsAlongChannels(const Node& node, const Shape& shape) {
   return shape.size() == 4 && (axis == 1 || axis == -3);
 }
 
-// The first channel that a Slice takes when it takes whole pixels and consecutive channels; -1 otherwise.
+// The first channel that a Slice takes when it takes whole pixels and consecutive channels; -1
+// otherwise.
 int64_t FirstChannel(const Graph& graph, const Node& slice) {
   const Shape& from = graph.value(slice.inputs[0]).shape;
   const Shape& to = graph.value(slice.outputs[0]).shape;
@@ -133,7 +135,8 @@ bool IsActivation(const std::string& op) {
 ValueId CutConstant(Graph& graph, ValueId id, int64_t first, int64_t count) {
   const std::vector<float>& all = graph.value(id).constant->floats;
   const std::vector<float> part(all.begin() + first, all.begin() + first + count);
-  return graph.AddConstant(graph.value(id).name + "/" + std::to_string(first), Tensor::Floats({count}, part));
+  return graph.AddConstant(graph.value(id).name + "/" + std::to_string(first),
+                           Tensor::Floats({count}, part));
 }
 
 // Whether it pays to apply a map to each piece of a concatenation instead of to the whole.
@@ -154,13 +157,15 @@ bool MoveThroughConcat(GraphRewriter& rewriter, int index) {
   if (!IsActivation(map.op) && map.op != "ChannelAffine") return false;
   const int concat = rewriter.OnlyFedBy(map.inputs[0], "Concat");
   if (concat < 0 || !FedByConvolutions(rewriter, rewriter.node(concat), graph)) return false;
-  if (rewriter.node(concat).Int("axis", 1) != 1 || graph.value(map.inputs[0]).shape.size() != 4) return false;
+  if (rewriter.node(concat).Int("axis", 1) != 1 || graph.value(map.inputs[0]).shape.size() != 4)
+    return false;
   rewriter.Remove(index);
   int64_t first = 0;
   for (size_t i = 0; i < rewriter.node(concat).inputs.size(); ++i) {
     const ValueId piece = rewriter.node(concat).inputs[i];
     const Shape shape = graph.value(piece).shape;
-    const ValueId result = graph.AddValue(graph.value(map.outputs[0]).name + "/" + std::to_string(i));
+    const ValueId result =
+        graph.AddValue(graph.value(map.outputs[0]).name + "/" + std::to_string(i));
     graph.value(result).shape = shape;
     graph.value(result).shape_known = true;
     Node part = map;
@@ -192,13 +197,16 @@ void MoveMapsThroughConcats(GraphRewriter& rewriter) {
   }
 }
 
-// Multiplies the weights and sets the bias so that the convolution yields what it yielded, times scale plus shift.
-void FoldAffine(Graph& graph, Node& conv, const std::vector<float>& scale, const std::vector<float>& shift) {
+// Multiplies the weights and sets the bias so that the convolution yields what it yielded, times
+// scale plus shift.
+void FoldAffine(Graph& graph, Node& conv, const std::vector<float>& scale,
+                const std::vector<float>& shift) {
   Tensor weights = *graph.value(conv.inputs[1]).constant;
   const size_t per_channel = weights.floats.size() / scale.size();
   for (size_t i = 0; i < weights.floats.size(); ++i) weights.floats[i] *= scale[i / per_channel];
   std::vector<float> bias(scale.size(), 0.0f);
-  if (conv.inputs.size() > 2 && conv.inputs[2] != kNoValue) bias = graph.value(conv.inputs[2]).constant->floats;
+  if (conv.inputs.size() > 2 && conv.inputs[2] != kNoValue)
+    bias = graph.value(conv.inputs[2]).constant->floats;
   for (size_t c = 0; c < bias.size(); ++c) bias[c] = bias[c] * scale[c] + shift[c];
   const Shape shape{static_cast<int64_t>(bias.size())};
   conv.inputs.resize(3);
@@ -252,7 +260,8 @@ bool HasConstantWeights(const Graph& graph, const Node& conv) {
   return true;
 }
 
-// Lets the convolution that feeds operand `operand` of a node do the node's work; false when it cannot.
+// Lets the convolution that feeds operand `operand` of a node do the node's work; false when it
+// cannot.
 bool AbsorbIntoConv(GraphRewriter& rewriter, int index, size_t operand) {
   Graph& graph = rewriter.graph();
   const Node node = rewriter.node(index);

@@ -62,8 +62,6 @@ std::vector<int> Graph::CountUses() const {
   return uses;
 }
 
-std::string Describe(const Node& node) {
-  return "node '" + node.name + "' (" + node.op + ")";
-}
+std::string Describe(const Node& node) { return "node '" + node.name + "' (" + node.op + ")"; }
 
 }  // namespace msf

@@ -1,4 +1,5 @@
-// A network as a list of operators between values: what the ONNX reader makes and the executor compiles.
+// A network as a list of operators between values: what the ONNX reader makes and the executor
+// compiles.
 #pragma once
 
 #include <map>

@@ -10,7 +10,8 @@ class GraphRewriter {
   explicit GraphRewriter(Graph& graph);
 
   Graph& graph() { return graph_; }
-  // Indices of living nodes, in the order in which they can run. Stable while nodes are removed, not when they are added.
+  // Indices of living nodes, in the order in which they can run. Stable while nodes are removed,
+  // not when they are added.
   std::vector<int> LiveNodes() const;
   Node& node(int index) { return graph_.nodes[static_cast<size_t>(index)]; }
 
@@ -26,10 +27,12 @@ class GraphRewriter {
   void Remove(int index);
   // Everything that reads `from` reads `to`; a graph output keeps its name.
   void ReplaceUses(ValueId from, ValueId to);
-  // Makes `node` write `to` instead of its first output; the former maker of `to` must be removed before.
+  // Makes `node` write `to` instead of its first output; the former maker of `to` must be removed
+  // before.
   void RedirectOutput(int index, ValueId to);
 
-  // Drops removed nodes and those that nobody reads, and orders the rest so that values are written before they are read.
+  // Drops removed nodes and those that nobody reads, and orders the rest so that values are written
+  // before they are read.
   void Sort();
 
  private:

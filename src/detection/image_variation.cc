@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-
 #include <opencv2/imgproc.hpp>
 
 #include "util/check.h"
@@ -11,8 +10,8 @@ namespace msf {
 namespace {
 
 ImageBox CutBy(const ImageBox& box, float width, float height) {
-  return {std::clamp(box.x0, 0.0f, width), std::clamp(box.y0, 0.0f, height), std::clamp(box.x1, 0.0f, width),
-          std::clamp(box.y1, 0.0f, height)};
+  return {std::clamp(box.x0, 0.0f, width), std::clamp(box.y0, 0.0f, height),
+          std::clamp(box.x1, 0.0f, width), std::clamp(box.y1, 0.0f, height)};
 }
 
 ImageBox HullOfCorners(const ImageBox& box, const cv::Matx23d& map) {
@@ -42,8 +41,8 @@ LabeledPicture Rotate(const LabeledPicture& picture, double degrees) {
   of_centres(0, 2) += (c - s - 1) / 2;
   of_centres(1, 2) += (s + c - 1) / 2;
   LabeledPicture turned;
-  cv::warpAffine(picture.pixels, turned.pixels, of_centres, {side, side}, cv::INTER_LINEAR, cv::BORDER_CONSTANT,
-                 cv::Scalar::all(114));
+  cv::warpAffine(picture.pixels, turned.pixels, of_centres, {side, side}, cv::INTER_LINEAR,
+                 cv::BORDER_CONSTANT, cv::Scalar::all(114));
   for (LabeledBox object : picture.objects) {
     const ImageBox hull = HullOfCorners(object.box, map);
     object.box = CutBy(hull, static_cast<float>(side), static_cast<float>(side));
@@ -53,18 +52,28 @@ LabeledPicture Rotate(const LabeledPicture& picture, double degrees) {
   return turned;
 }
 
-LabeledPicture CutObject(const LabeledPicture& picture, size_t target, double fraction, ImageSide side) {
-  MSF_CHECK(target < picture.objects.size() && fraction >= 0 && fraction < 1, "no such object or cut");
+LabeledPicture CutObject(const LabeledPicture& picture, size_t target, double fraction,
+                         ImageSide side) {
+  MSF_CHECK(target < picture.objects.size() && fraction >= 0 && fraction < 1,
+            "no such object or cut");
   const ImageBox& box = picture.objects[target].box;
   cv::Rect kept(0, 0, picture.pixels.cols, picture.pixels.rows);
   const auto along = [&](float low, float high, double share) {
     return static_cast<int>(std::lround(low + (high - low) * share));
   };
   switch (side) {
-    case ImageSide::kLeft: kept.x = along(box.x0, box.x1, fraction); break;
-    case ImageSide::kTop: kept.y = along(box.y0, box.y1, fraction); break;
-    case ImageSide::kRight: kept.width = along(box.x0, box.x1, 1 - fraction); break;
-    case ImageSide::kBottom: kept.height = along(box.y0, box.y1, 1 - fraction); break;
+    case ImageSide::kLeft:
+      kept.x = along(box.x0, box.x1, fraction);
+      break;
+    case ImageSide::kTop:
+      kept.y = along(box.y0, box.y1, fraction);
+      break;
+    case ImageSide::kRight:
+      kept.width = along(box.x0, box.x1, 1 - fraction);
+      break;
+    case ImageSide::kBottom:
+      kept.height = along(box.y0, box.y1, 1 - fraction);
+      break;
   }
   kept.x = std::clamp(kept.x, 0, picture.pixels.cols - 1);
   kept.y = std::clamp(kept.y, 0, picture.pixels.rows - 1);

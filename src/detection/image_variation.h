@@ -1,9 +1,8 @@
 // Labelled images as a SLAM camera sees people: rolled, and cut off by the border.
 #pragma once
 
-#include <vector>
-
 #include <opencv2/core/mat.hpp>
+#include <vector>
 
 #include "detection/detection_metrics.h"
 
@@ -14,15 +13,17 @@ struct LabeledPicture {
   std::vector<LabeledBox> objects;
 };
 
-// The picture in the middle of a grey square with its longer side, turned by `degrees` around the centre: a camera that rolls keeps the scale, and
-// corners leave the square. A box becomes the upright hull of its turned corners, cut by the square; objects of
-// which less than half stays inside are ignored.
+// The picture in the middle of a grey square with its longer side, turned by `degrees` around the
+// centre: a camera that rolls keeps the scale, and corners leave the square. A box becomes the
+// upright hull of its turned corners, cut by the square; objects of which less than half stays
+// inside are ignored.
 LabeledPicture Rotate(const LabeledPicture& picture, double degrees);
 
 enum class ImageSide { kLeft, kTop, kRight, kBottom };
 
-// The part of the picture that remains when a side's border moves inwards until it cuts `fraction` of the box of object `target`. All other
-// objects are ignored. 0 <= fraction < 1.
-LabeledPicture CutObject(const LabeledPicture& picture, size_t target, double fraction, ImageSide side);
+// The part of the picture that remains when a side's border moves inwards until it cuts `fraction`
+// of the box of object `target`. All other objects are ignored. 0 <= fraction < 1.
+LabeledPicture CutObject(const LabeledPicture& picture, size_t target, double fraction,
+                         ImageSide side);
 
 }  // namespace msf

@@ -19,7 +19,8 @@ cv::Rect WhiteArea(const cv::Mat& pixels) {
   cv::Rect area;
   for (int y = 0; y < pixels.rows; ++y) {
     for (int x = 0; x < pixels.cols; ++x) {
-      if (pixels.at<cv::Vec3b>(y, x)[0] > 200) area = area.empty() ? cv::Rect(x, y, 1, 1) : area | cv::Rect(x, y, 1, 1);
+      if (pixels.at<cv::Vec3b>(y, x)[0] > 200)
+        area = area.empty() ? cv::Rect(x, y, 1, 1) : area | cv::Rect(x, y, 1, 1);
     }
   }
   return area;
@@ -53,7 +54,8 @@ TEST(Rotate, ObjectsThatLeaveThePictureAreIgnored) {
 
 TEST(CutObject, EverySideCutsTheWantedPart) {
   const LabeledPicture picture = WhiteBox(60, 40, {10, 8, 20, 16});
-  for (const ImageSide side : {ImageSide::kLeft, ImageSide::kTop, ImageSide::kRight, ImageSide::kBottom}) {
+  for (const ImageSide side :
+       {ImageSide::kLeft, ImageSide::kTop, ImageSide::kRight, ImageSide::kBottom}) {
     const LabeledPicture cut = CutObject(picture, 0, 0.5, side);
     ASSERT_EQ(cut.objects.size(), 1u);
     EXPECT_NEAR(cut.objects[0].box.area(), 20 * 16 / 2, 0.01);
@@ -61,7 +63,8 @@ TEST(CutObject, EverySideCutsTheWantedPart) {
     EXPECT_EQ(white.x, cut.objects[0].box.x0);
     EXPECT_EQ(white.y, cut.objects[0].box.y0);
     EXPECT_EQ(white.area(), 160);
-    const bool at_border = white.x == 0 || white.y == 0 || white.x + white.width == cut.pixels.cols ||
+    const bool at_border = white.x == 0 || white.y == 0 ||
+                           white.x + white.width == cut.pixels.cols ||
                            white.y + white.height == cut.pixels.rows;
     EXPECT_TRUE(at_border);
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-
 #include <opencv2/imgproc.hpp>
 
 #include "util/check.h"
@@ -23,21 +22,25 @@ Letterbox::Letterbox(cv::Size image, cv::Size network) : image_(image), network_
 }
 
 void Letterbox::Fill(const cv::Mat& image, uint8_t* rgb) const {
-  MSF_CHECK(image.size() == image_ && image.depth() == CV_8U, "another image than the letterbox was made for");
+  MSF_CHECK(image.size() == image_ && image.depth() == CV_8U,
+            "another image than the letterbox was made for");
   cv::Mat target(network_, CV_8UC3, rgb);
   if (inside_.size() != network_) target.setTo(cv::Scalar::all(114));
   cv::Mat scaled = image;
-  if (image.size() != inside_.size()) cv::resize(image, scaled, inside_.size(), 0, 0, cv::INTER_LINEAR);
+  if (image.size() != inside_.size())
+    cv::resize(image, scaled, inside_.size(), 0, 0, cv::INTER_LINEAR);
   const cv::Mat inside = target(inside_);
   cv::cvtColor(scaled, inside, image.channels() == 1 ? cv::COLOR_GRAY2RGB : cv::COLOR_BGR2RGB);
 }
 
 ImageBox Letterbox::ToImage(const ImageBox& box) const {
   const auto x = [&](float v) {
-    return std::clamp((v - static_cast<float>(inside_.x)) / scale_, 0.0f, static_cast<float>(image_.width));
+    return std::clamp((v - static_cast<float>(inside_.x)) / scale_, 0.0f,
+                      static_cast<float>(image_.width));
   };
   const auto y = [&](float v) {
-    return std::clamp((v - static_cast<float>(inside_.y)) / scale_, 0.0f, static_cast<float>(image_.height));
+    return std::clamp((v - static_cast<float>(inside_.y)) / scale_, 0.0f,
+                      static_cast<float>(image_.height));
   };
   return {x(box.x0), y(box.y0), x(box.x1), y(box.y1)};
 }

@@ -7,13 +7,15 @@
 
 namespace msf {
 
-// Scales an image by one factor so that it just fits, centred, with a grey border (value 114): the way YOLO networks are trained.
+// Scales an image by one factor so that it just fits, centred, with a grey border (value 114): the
+// way YOLO networks are trained.
 class Letterbox {
  public:
   // All sizes in pixels.
   Letterbox(cv::Size image, cv::Size network);
 
-  // Writes the network's input, RGB [height][width][3]. `image` is 8-bit BGR or grey, of the size given above.
+  // Writes the network's input, RGB [height][width][3]. `image` is 8-bit BGR or grey, of the size
+  // given above.
   void Fill(const cv::Mat& image, uint8_t* rgb) const;
 
   // From network pixels to pixels of the image, cut at its border.

@@ -1,4 +1,5 @@
-// Puts the buffers of a network into one block of memory, reusing the place of those that are no longer needed.
+// Puts the buffers of a network into one block of memory, reusing the place of those that are no
+// longer needed.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +19,8 @@ struct MemoryPlan {
   size_t total_bytes = 0;
 };
 
-// No two buffers that are in use at the same step overlap. Large buffers choose first, each takes the lowest place that fits.
+// No two buffers that are in use at the same step overlap. Large buffers choose first, each takes
+// the lowest place that fits.
 MemoryPlan PlanMemory(const std::vector<BufferLife>& buffers);
 
 }  // namespace msf

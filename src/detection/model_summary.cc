@@ -22,7 +22,8 @@ LayerSummary SummarizeNode(const Graph& graph, const Node& node) {
   for (size_t i = 1; i < node.inputs.size() && learned; ++i) {
     // Of a norm, mean and variance are statistics.
     const bool counts = node.op == "Conv" || i < 3;
-    if (counts && graph.IsConstant(node.inputs[i])) layer.parameters += NumElements(graph.value(node.inputs[i]).shape);
+    if (counts && graph.IsConstant(node.inputs[i]))
+      layer.parameters += NumElements(graph.value(node.inputs[i]).shape);
   }
   std::vector<int64_t> kernel = node.Ints("kernel_shape");
   if (node.op == "Conv") {
@@ -34,7 +35,8 @@ LayerSummary SummarizeNode(const Graph& graph, const Node& node) {
   if (node.op == "MatMul") layer.flops = 2 * elements * graph.value(node.inputs[0]).shape.back();
   if (node.op == "BatchNormalization") layer.flops = 2 * elements;
   if (node.op == "Add") layer.flops = elements;
-  if (node.op == "AveragePool" && kernel.size() == 2) layer.flops = elements * kernel[0] * kernel[1];
+  if (node.op == "AveragePool" && kernel.size() == 2)
+    layer.flops = elements * kernel[0] * kernel[1];
   layer.type += WindowText(kernel, node.Ints("strides"));
   return layer;
 }
@@ -44,7 +46,8 @@ LayerSummary SummarizeNode(const Graph& graph, const Node& node) {
 StatusOr<ModelSummary> Summarize(const Graph& graph, int64_t height, int64_t width) {
   StatusOr<InputSize> own = DeclaredInputSize(graph);
   if (!own.ok()) return own.status();
-  StatusOr<Graph> fixed = Specialize(graph, own->height > 0 ? own->height : height, own->width > 0 ? own->width : width);
+  StatusOr<Graph> fixed = Specialize(graph, own->height > 0 ? own->height : height,
+                                     own->width > 0 ? own->width : width);
   if (!fixed.ok()) return fixed.status();
   ModelSummary summary;
   summary.source = graph.source;
@@ -60,14 +63,16 @@ StatusOr<ModelSummary> Summarize(const Graph& graph, int64_t height, int64_t wid
 }
 
 std::string FormatSummary(const ModelSummary& summary) {
-  std::string text = fmt::format("{:>4}  {:<18}{:<20}{:>12}{:>10}  {}\n", "", "layer", "output", "parameters", "MFLOPs", "name");
+  std::string text = fmt::format("{:>4}  {:<18}{:<20}{:>12}{:>10}  {}\n", "", "layer", "output",
+                                 "parameters", "MFLOPs", "name");
   for (size_t i = 0; i < summary.layers.size(); ++i) {
     const LayerSummary& layer = summary.layers[i];
-    text += fmt::format("{:>4}  {:<18}{:<20}{:>12}{:>10.1f}  {}\n", i, layer.type, ToString(layer.output), layer.parameters,
+    text += fmt::format("{:>4}  {:<18}{:<20}{:>12}{:>10.1f}  {}\n", i, layer.type,
+                        ToString(layer.output), layer.parameters,
                         static_cast<double>(layer.flops) * 1e-6, layer.name);
   }
-  return text + fmt::format("{}: {} parameters, {:.3f} GFLOPs\n", summary.source, summary.parameters,
-                            static_cast<double>(summary.flops) * 1e-9);
+  return text + fmt::format("{}: {} parameters, {:.3f} GFLOPs\n", summary.source,
+                            summary.parameters, static_cast<double>(summary.flops) * 1e-9);
 }
 
 }  // namespace msf

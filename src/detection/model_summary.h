@@ -10,7 +10,7 @@ namespace msf {
 
 struct LayerSummary {
   std::string name;
-  std::string type;   // "Conv 3x3/2", "MaxPool 5x5", "Concat", ...
+  std::string type;  // "Conv 3x3/2", "MaxPool 5x5", "Concat", ...
   Shape output;
   int64_t parameters = 0;
   int64_t flops = 0;  // 2 per multiply-add
@@ -23,7 +23,8 @@ struct ModelSummary {
   int64_t flops = 0;
 };
 
-// For images of height x width. Counted are convolutions, matrix products, norms (2 per element), sums and averages.
+// For images of height x width. Counted are convolutions, matrix products, norms (2 per element),
+// sums and averages.
 StatusOr<ModelSummary> Summarize(const Graph& graph, int64_t height, int64_t width);
 
 // A table with the totals below.

@@ -32,7 +32,8 @@ std::span<float> Floats(void* memory, const Shape& shape) {
 
 }  // namespace
 
-NetworkBuilder::NetworkBuilder(CompiledNetwork& network, const CompileOptions& options, const ActivationRanges& ranges)
+NetworkBuilder::NetworkBuilder(CompiledNetwork& network, const CompileOptions& options,
+                               const ActivationRanges& ranges)
     : network_(network),
       graph_(network.graph_),
       keep_values_(options.keep_values),
@@ -62,7 +63,8 @@ Status NetworkBuilder::Build() {
 
 void* NetworkBuilder::Address(BufferId buffer) const {
   if (buffer < 0) return nullptr;
-  return static_cast<std::byte*>(network_.activations_.get()) + memory_.offsets[static_cast<size_t>(buffer)];
+  return static_cast<std::byte*>(network_.activations_.get()) +
+         memory_.offsets[static_cast<size_t>(buffer)];
 }
 
 NetworkBuilder::BufferId NetworkBuilder::NewBuffer(size_t bytes) {
@@ -73,7 +75,8 @@ NetworkBuilder::BufferId NetworkBuilder::NewBuffer(size_t bytes) {
 
 NetworkBuilder::BufferId NetworkBuilder::Read(ValueId id, const Storage& wanted) {
   std::vector<Copy>& copies = copies_.at(id);
-  auto found = std::find_if(copies.begin(), copies.end(), [&](const Copy& c) { return c.storage == wanted; });
+  auto found = std::find_if(copies.begin(), copies.end(),
+                            [&](const Copy& c) { return c.storage == wanted; });
   if (found == copies.end()) {
     const Copy from = copies.front();
     const Shape& shape = value(id).shape;
@@ -108,13 +111,20 @@ void NetworkBuilder::Append(std::string what, std::function<std::unique_ptr<Step
 void NetworkBuilder::AddNode(size_t index) {
   const Node& node = graph_.nodes[index];
   switch (plan_.kinds[index]) {
-    case NodeKind::kConvolution: return AddConvolution(node, plan_.compute[index]);
-    case NodeKind::kPool: return AddPool(node);
-    case NodeKind::kConcat: return AddConcat(node);
-    case NodeKind::kSliceChannels: return AddSliceChannels(node);
-    case NodeKind::kRepeat: return AddRepeat(node);
-    case NodeKind::kElementwise: return AddPlain(node, true);
-    case NodeKind::kReference: return AddPlain(node, false);
+    case NodeKind::kConvolution:
+      return AddConvolution(node, plan_.compute[index]);
+    case NodeKind::kPool:
+      return AddPool(node);
+    case NodeKind::kConcat:
+      return AddConcat(node);
+    case NodeKind::kSliceChannels:
+      return AddSliceChannels(node);
+    case NodeKind::kRepeat:
+      return AddRepeat(node);
+    case NodeKind::kElementwise:
+      return AddPlain(node, true);
+    case NodeKind::kReference:
+      return AddPlain(node, false);
   }
 }
 
@@ -126,7 +136,8 @@ void NetworkBuilder::AddConvolution(const Node& node, NumberFormat compute) {
   spec.input_shape = value(node.inputs[0]).shape;
   spec.output_shape = value(node.outputs[0]).shape;
   spec.weights = value(node.inputs[1]).constant.get();
-  if (node.inputs.size() > 2 && node.inputs[2] != kNoValue) spec.bias = value(node.inputs[2]).constant.get();
+  if (node.inputs.size() > 2 && node.inputs[2] != kNoValue)
+    spec.bias = value(node.inputs[2]).constant.get();
   const StatusOr<Window> window =
       ReadWindow(node, spec.input_shape, spec.weights->shape[2], spec.weights->shape[3]);
   spec.window = window.value();
@@ -145,7 +156,8 @@ void NetworkBuilder::AddConvolution(const Node& node, NumberFormat compute) {
     spec.addend.channels_last = true;
     addend = Read(id, spec.addend);
   }
-  // Where oneDNN cannot write the storage of the value, it writes its own format; readers convert from there.
+  // Where oneDNN cannot write the storage of the value, it writes its own format; readers convert
+  // from there.
   spec.output = storage(node.outputs[0]);
   if (!CanWrite(compute, spec.output.format)) spec.output = {compute, true};
   const BufferId out = Write(node.outputs[0], spec.output);
@@ -206,7 +218,8 @@ void NetworkBuilder::AddSliceChannels(const Node& node) {
   const Shape& from = value(node.inputs[0]).shape;
   ChannelCopy copy;
   copy.run_bytes = static_cast<size_t>(node.Int("count", 0)) * element;
-  copy.source = {static_cast<size_t>(from[1]) * element, static_cast<size_t>(node.Int("first", 0)) * element};
+  copy.source = {static_cast<size_t>(from[1]) * element,
+                 static_cast<size_t>(node.Int("first", 0)) * element};
   copy.target = {copy.run_bytes, 0};
   const BufferId in = Read(node.inputs[0], as);
   const BufferId out = Write(node.outputs[0], as);
@@ -282,7 +295,8 @@ Status NetworkBuilder::MakeSteps() {
     try {
       network_.steps_.push_back(planned.make());
     } catch (const std::exception& error) {  // dnnl::error, which this file does not know
-      return Status::Error(graph_.source + ": " + planned.what + " cannot be prepared: " + error.what());
+      return Status::Error(graph_.source + ": " + planned.what +
+                           " cannot be prepared: " + error.what());
     }
   }
   return Status::Ok();
@@ -301,7 +315,8 @@ void NetworkBuilder::NameInnerValues() {
     for (const ValueId id : node.outputs) {
       const Copy& copy = copies_.at(id).front();
       if (copy.storage.format != NumberFormat::kFloat32 || value(id).shape.size() != 4) continue;
-      network_.inner_values_.push_back({value(id).name, Floats(Address(copy.buffer), value(id).shape)});
+      network_.inner_values_.push_back(
+          {value(id).name, Floats(Address(copy.buffer), value(id).shape)});
     }
   }
 }

@@ -15,7 +15,8 @@ namespace msf {
 // First lists the steps with the buffers they use, then lays out memory, then makes the steps.
 class NetworkBuilder {
  public:
-  NetworkBuilder(CompiledNetwork& network, const CompileOptions& options, const ActivationRanges& ranges);
+  NetworkBuilder(CompiledNetwork& network, const CompileOptions& options,
+                 const ActivationRanges& ranges);
   Status Build();
 
  private:
@@ -37,7 +38,8 @@ class NetworkBuilder {
 
   // A buffer that the next step fills.
   BufferId NewBuffer(size_t bytes);
-  // The value in the wanted storage for the next step to read; appends a conversion when it lies in another one only.
+  // The value in the wanted storage for the next step to read; appends a conversion when it lies in
+  // another one only.
   BufferId Read(ValueId id, const Storage& wanted);
   // Its memory is not reused before the next step is done.
   void KeepForNextStep(BufferId buffer);

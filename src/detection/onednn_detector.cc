@@ -16,7 +16,8 @@ namespace {
 class OneDnnDetector : public Detector {
  public:
   OneDnnDetector(std::vector<std::string> class_names, cv::Size input_size, std::string description,
-                 const DetectorOptions& options, std::unique_ptr<CompiledNetwork> network, HeadDecoder decoder)
+                 const DetectorOptions& options, std::unique_ptr<CompiledNetwork> network,
+                 HeadDecoder decoder)
       : Detector(std::move(class_names), input_size, std::move(description)),
         options_(options),
         network_(std::move(network)),
@@ -28,7 +29,8 @@ class OneDnnDetector : public Detector {
     letterbox.Fill(image, network_->pixels());
     MSF_RETURN_IF_ERROR(network_->Run());
     const float confidence = static_cast<float>(options_.confidence);
-    std::vector<Detection> found = decoder_.Decode(network_->outputs(), confidence, options_.every_class);
+    std::vector<Detection> found =
+        decoder_.Decode(network_->outputs(), confidence, options_.every_class);
     Detections result;
     result.objects = SuppressOverlaps(std::move(found), static_cast<float>(options_.max_iou),
                                       static_cast<size_t>(options_.max_detections));
@@ -46,9 +48,12 @@ class OneDnnDetector : public Detector {
 
 const char* Name(NetworkPrecision precision) {
   switch (precision) {
-    case NetworkPrecision::kFloat32: return "fp32";
-    case NetworkPrecision::kBfloat16: return "bf16";
-    case NetworkPrecision::kInt8: return "int8";
+    case NetworkPrecision::kFloat32:
+      return "fp32";
+    case NetworkPrecision::kBfloat16:
+      return "bf16";
+    case NetworkPrecision::kInt8:
+      return "int8";
   }
   return "";
 }
@@ -59,11 +64,13 @@ NetworkPrecision ChoosePrecision(const std::string& name, const Graph& graph) {
   if (name == "fp32") return NetworkPrecision::kFloat32;
   if (name == "bf16") return NetworkPrecision::kBfloat16;
   if (name == "int8") return NetworkPrecision::kInt8;
-  if (graph.metadata.count(kActivationRangesKey) > 0 && HasFastInt8()) return NetworkPrecision::kInt8;
+  if (graph.metadata.count(kActivationRangesKey) > 0 && HasFastInt8())
+    return NetworkPrecision::kInt8;
   return HasFastBfloat16() ? NetworkPrecision::kBfloat16 : NetworkPrecision::kFloat32;
 }
 
-StatusOr<std::vector<std::string>> ClassNamesFor(const DetectorOptions& options, const Graph& graph, int num_classes) {
+StatusOr<std::vector<std::string>> ClassNamesFor(const DetectorOptions& options, const Graph& graph,
+                                                 int num_classes) {
   std::vector<std::string> names;
   std::string origin = graph.source;
   if (!options.classes.empty()) {
@@ -79,8 +86,8 @@ StatusOr<std::vector<std::string>> ClassNamesFor(const DetectorOptions& options,
     for (int i = 0; i < num_classes; ++i) names.push_back(fmt::format("class {}", i));
   }
   if (static_cast<int>(names.size()) != num_classes) {
-    return Status::Error(fmt::format("{}: the network has {} classes but {} lists {} names", graph.source, num_classes,
-                                     origin, names.size()));
+    return Status::Error(fmt::format("{}: the network has {} classes but {} lists {} names",
+                                     graph.source, num_classes, origin, names.size()));
   }
   return names;
 }
@@ -89,7 +96,8 @@ StatusOr<cv::Size> InputSizeFor(const DetectorOptions& options, const Graph& gra
   StatusOr<InputSize> own = DeclaredInputSize(graph);
   if (!own.ok()) return own.status();
   if (options.width > 0) return cv::Size(options.width, options.height);
-  return cv::Size(own->width > 0 ? static_cast<int>(own->width) : 416, own->height > 0 ? static_cast<int>(own->height) : 320);
+  return cv::Size(own->width > 0 ? static_cast<int>(own->width) : 416,
+                  own->height > 0 ? static_cast<int>(own->height) : 320);
 }
 
 Status CheckImage(const cv::Mat& image) {
@@ -98,7 +106,9 @@ Status CheckImage(const cv::Mat& image) {
   return Status::Error("the detector needs 8-bit grey or BGR images");
 }
 
-StatusOr<std::unique_ptr<Detector>> MakeOneDnnDetector(const DetectorOptions& options, const Graph& graph, NetworkPrecision precision) {
+StatusOr<std::unique_ptr<Detector>> MakeOneDnnDetector(const DetectorOptions& options,
+                                                       const Graph& graph,
+                                                       NetworkPrecision precision) {
   StatusOr<cv::Size> size = InputSizeFor(options, graph);
   if (!size.ok()) return size.status();
   CompileOptions compile;
@@ -112,13 +122,15 @@ StatusOr<std::unique_ptr<Detector>> MakeOneDnnDetector(const DetectorOptions& op
   if (!decoder.ok()) return decoder.status();
   auto names = ClassNamesFor(options, graph, decoder->num_classes());
   if (!names.ok()) return names.status();
-  const std::string description = fmt::format("{} on oneDNN, {}, {}x{}", std::filesystem::path(graph.source).filename().string(),
-                                              Name(precision), size->width, size->height);
-  return std::unique_ptr<Detector>(std::make_unique<OneDnnDetector>(*std::move(names), *size, description, options,
-                                                                    *std::move(network), *std::move(decoder)));
+  const std::string description = fmt::format(
+      "{} on oneDNN, {}, {}x{}", std::filesystem::path(graph.source).filename().string(),
+      Name(precision), size->width, size->height);
+  return std::unique_ptr<Detector>(std::make_unique<OneDnnDetector>(
+      *std::move(names), *size, description, options, *std::move(network), *std::move(decoder)));
 }
 
-StatusOr<std::unique_ptr<Detector>> MakeOneDnnDetector(const DetectorOptions& options, const std::filesystem::path& model) {
+StatusOr<std::unique_ptr<Detector>> MakeOneDnnDetector(const DetectorOptions& options,
+                                                       const std::filesystem::path& model) {
   StatusOr<Graph> graph = ReadOnnx(model);
   if (!graph.ok()) return graph.status();
   return MakeOneDnnDetector(options, *graph, ChoosePrecision(options.precision, *graph));

@@ -33,7 +33,8 @@ void RemoveCasts(onnx::GraphProto& graph, const std::set<std::string>& floats) {
     for (std::string& input : *node.mutable_input()) {
       if (const auto found = renamed.find(input); found != renamed.end()) input = found->second;
     }
-    if (node.op_type() == "Cast" && node.input_size() == 1 && node.output_size() == 1 && floats.count(node.input(0))) {
+    if (node.op_type() == "Cast" && node.input_size() == 1 && node.output_size() == 1 &&
+        floats.count(node.input(0))) {
       renamed[node.output(0)] = node.input(0);
     } else {
       *kept.Add() = std::move(node);
@@ -47,10 +48,12 @@ constexpr int64_t kLeastHalvedElements = 256;
 
 bool FitsHalf(const Tensor& tensor) {
   return tensor.type == ElementType::kFloat && tensor.size() >= kLeastHalvedElements &&
-         std::all_of(tensor.floats.begin(), tensor.floats.end(), [](float x) { return std::abs(x) < 65504.0f; });
+         std::all_of(tensor.floats.begin(), tensor.floats.end(),
+                     [](float x) { return std::abs(x) < 65504.0f; });
 }
 
-// Turns an initializer into half precision under another name, and returns the node that casts it back.
+// Turns an initializer into half precision under another name, and returns the node that casts it
+// back.
 onnx::NodeProto HalveTensor(onnx::TensorProto& proto, const Tensor& tensor) {
   onnx::NodeProto cast;
   cast.set_op_type("Cast");
@@ -88,7 +91,8 @@ StatusOr<std::string> HalveOnnxWeights(const std::string& bytes) {
   return model->SerializeAsString();
 }
 
-StatusOr<std::string> SetOnnxMetadata(const std::string& bytes, const std::map<std::string, std::string>& entries) {
+StatusOr<std::string> SetOnnxMetadata(const std::string& bytes,
+                                      const std::map<std::string, std::string>& entries) {
   StatusOr<onnx::ModelProto> model = Parse(bytes);
   if (!model.ok()) return model.status();
   for (const auto& [key, value] : entries) {
@@ -121,7 +125,8 @@ StatusOr<std::string> SimplifyOnnx(const std::string& bytes, int height, int wid
     for (int i = 0; i < 4; ++i) shape.mutable_dim(i)->set_dim_value(sizes[i]);
   }
   // OpenCV insists on a shape of the outputs, though not on its sizes.
-  for (auto& output : *graph.mutable_output()) output.mutable_type()->mutable_tensor_type()->mutable_shape();
+  for (auto& output : *graph.mutable_output())
+    output.mutable_type()->mutable_tensor_type()->mutable_shape();
   return model->SerializeAsString();
 }
 

@@ -1,9 +1,9 @@
 #include "detection/onnx_reader.h"
 
+#include <fmt/format.h>
+
 #include <fstream>
 #include <unordered_map>
-
-#include <fmt/format.h>
 
 #include "detection/onnx_tensor.h"
 #include "detection/operators.h"
@@ -42,7 +42,8 @@ class Reader {
       const std::string& name = initializer.name();
       if (!tensor.ok()) return Error(fmt::format("tensor '{}' {}", name, tensor.message()));
       const ValueId id = graph_.AddConstant(name, *std::move(tensor));
-      if (!ids_.emplace(name, id).second) return Error(fmt::format("tensor '{}' appears twice", name));
+      if (!ids_.emplace(name, id).second)
+        return Error(fmt::format("tensor '{}' appears twice", name));
     }
     if (proto.sparse_initializer_size() > 0) return Error("has sparse weights, not supported");
     return Status::Ok();
@@ -55,7 +56,8 @@ class Reader {
       ids_.emplace(input.name(), id);
       graph_.inputs.push_back(id);
       for (const auto& dim : input.type().tensor_type().shape().dim()) {
-        graph_.value(id).shape.push_back(dim.has_dim_value() && dim.dim_value() > 0 ? dim.dim_value() : -1);
+        graph_.value(id).shape.push_back(
+            dim.has_dim_value() && dim.dim_value() > 0 ? dim.dim_value() : -1);
       }
     }
     if (graph_.inputs.size() != 1) {
@@ -67,7 +69,8 @@ class Reader {
   Status ReadOutputs(const onnx::GraphProto& proto) {
     for (const auto& output : proto.output()) {
       const auto found = ids_.find(output.name());
-      if (found == ids_.end()) return Error(fmt::format("no node makes the output '{}'", output.name()));
+      if (found == ids_.end())
+        return Error(fmt::format("no node makes the output '{}'", output.name()));
       graph_.outputs.push_back(found->second);
     }
     return graph_.outputs.empty() ? Error("has no output") : Status::Ok();
@@ -79,10 +82,13 @@ class Reader {
     node.name = proto.name().empty() && proto.output_size() > 0 ? proto.output(0) : proto.name();
     const auto error = [&](const std::string& what) { return Error(Describe(node) + " " + what); };
     if (!proto.domain().empty() && proto.domain() != "ai.onnx") {
-      return error(fmt::format("comes from the operator set '{}', which is not supported", proto.domain()));
+      return error(
+          fmt::format("comes from the operator set '{}', which is not supported", proto.domain()));
     }
     if (node.op != "Constant" && !FindOperator(node.op)) {
-      return error("is an operator that is not supported; export without post-processing, or use backend: opencv");
+      return error(
+          "is an operator that is not supported; export without post-processing, or use backend: "
+          "opencv");
     }
     for (const auto& attribute : proto.attribute()) {
       if (Status status = ReadAttribute(attribute, node); !status.ok()) {
@@ -92,7 +98,8 @@ class Reader {
     if (node.op == "Constant") return ReadConstant(proto, node);
     for (const std::string& name : proto.input()) {
       const auto found = ids_.find(name);
-      if (!name.empty() && found == ids_.end()) return error(fmt::format("reads '{}', which nothing before it makes", name));
+      if (!name.empty() && found == ids_.end())
+        return error(fmt::format("reads '{}', which nothing before it makes", name));
       node.inputs.push_back(name.empty() ? kNoValue : found->second);
     }
     while (!node.inputs.empty() && node.inputs.back() == kNoValue) node.inputs.pop_back();
@@ -111,18 +118,29 @@ class Reader {
     using A = onnx::AttributeProto;
     Attribute& target = node.attributes[proto.name()];
     switch (proto.type()) {
-      case A::INT: target = static_cast<int64_t>(proto.i()); break;
-      case A::FLOAT: target = proto.f(); break;
-      case A::STRING: target = proto.s(); break;
-      case A::INTS: target = std::vector<int64_t>(proto.ints().begin(), proto.ints().end()); break;
-      case A::FLOATS: target = std::vector<float>(proto.floats().begin(), proto.floats().end()); break;
+      case A::INT:
+        target = static_cast<int64_t>(proto.i());
+        break;
+      case A::FLOAT:
+        target = proto.f();
+        break;
+      case A::STRING:
+        target = proto.s();
+        break;
+      case A::INTS:
+        target = std::vector<int64_t>(proto.ints().begin(), proto.ints().end());
+        break;
+      case A::FLOATS:
+        target = std::vector<float>(proto.floats().begin(), proto.floats().end());
+        break;
       case A::TENSOR: {
         StatusOr<Tensor> tensor = DecodeTensor(proto.t());
         if (!tensor.ok()) return tensor.status();
         target = *std::move(tensor);
         break;
       }
-      default: return Status::Error("is of a kind that is not supported");
+      default:
+        return Status::Error("is of a kind that is not supported");
     }
     return Status::Ok();
   }
@@ -173,8 +191,10 @@ StatusOr<std::string> ReadModelBytes(const std::filesystem::path& file) {
 
 StatusOr<Graph> ParseOnnx(std::string_view bytes, const std::string& source) {
   onnx::ModelProto model;
-  if (bytes.size() > kMaxModelBytes || !model.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
-    return Status::Error(source + ": not a complete ONNX model; the file is damaged, truncated or of another kind");
+  if (bytes.size() > kMaxModelBytes ||
+      !model.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
+    return Status::Error(
+        source + ": not a complete ONNX model; the file is damaged, truncated or of another kind");
   }
   return Reader(source).Read(model);
 }

@@ -12,8 +12,9 @@ namespace msf {
 // Largest file the reader accepts, in bytes.
 inline constexpr size_t kMaxModelBytes = size_t{512} << 20;
 
-// Reads a model. Every operator is one we know, every value is written once and before it is read; all else (a truncated
-// file, an unknown operator, weights whose size contradicts their shape, ...) is an error that names file and node.
+// Reads a model. Every operator is one we know, every value is written once and before it is read;
+// all else (a truncated file, an unknown operator, weights whose size contradicts their shape, ...)
+// is an error that names file and node.
 StatusOr<Graph> ReadOnnx(const std::filesystem::path& file);
 
 // The same from memory; `source` names it in messages.

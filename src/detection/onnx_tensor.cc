@@ -53,19 +53,27 @@ Status FillFloats(const Proto& proto, const Field& field, Tensor& tensor, const 
 Status DecodeData(const Proto& proto, Tensor& tensor) {
   const auto plain = [](auto x) { return static_cast<float>(x); };
   switch (proto.data_type()) {
-    case Proto::FLOAT: return FillFloats<float>(proto, proto.float_data(), tensor, plain);
-    case Proto::DOUBLE: return FillFloats<double>(proto, proto.double_data(), tensor, plain);
+    case Proto::FLOAT:
+      return FillFloats<float>(proto, proto.float_data(), tensor, plain);
+    case Proto::DOUBLE:
+      return FillFloats<double>(proto, proto.double_data(), tensor, plain);
     case Proto::FLOAT16:
       return FillFloats<uint16_t>(proto, proto.int32_data(), tensor, HalfToFloat);
     case Proto::BFLOAT16:
       return FillFloats<uint16_t>(proto, proto.int32_data(), tensor, Bfloat16ToFloat);
-    case Proto::INT64: return FillInts<int64_t>(proto, proto.int64_data(), tensor);
-    case Proto::INT32: return FillInts<int32_t>(proto, proto.int32_data(), tensor);
-    case Proto::INT16: return FillInts<int16_t>(proto, proto.int32_data(), tensor);
-    case Proto::INT8: return FillInts<int8_t>(proto, proto.int32_data(), tensor);
+    case Proto::INT64:
+      return FillInts<int64_t>(proto, proto.int64_data(), tensor);
+    case Proto::INT32:
+      return FillInts<int32_t>(proto, proto.int32_data(), tensor);
+    case Proto::INT16:
+      return FillInts<int16_t>(proto, proto.int32_data(), tensor);
+    case Proto::INT8:
+      return FillInts<int8_t>(proto, proto.int32_data(), tensor);
     case Proto::UINT8:
-    case Proto::BOOL: return FillInts<uint8_t>(proto, proto.int32_data(), tensor);
-    default: return Status::Error("has a data type that is not supported");
+    case Proto::BOOL:
+      return FillInts<uint8_t>(proto, proto.int32_data(), tensor);
+    default:
+      return Status::Error("has a data type that is not supported");
   }
 }
 
@@ -88,7 +96,7 @@ uint16_t FloatToHalf(float x) {
   if (std::isnan(x)) return 0x7e00;
   if (magnitude >= 65520.0f) return static_cast<uint16_t>(sign | 0x7c00);
   int exponent = 0;
-  std::frexp(magnitude, &exponent);           // magnitude = fraction * 2^exponent, fraction in [0.5, 1)
+  std::frexp(magnitude, &exponent);  // magnitude = fraction * 2^exponent, fraction in [0.5, 1)
   const int shift = std::max(exponent, -13);  // below 2^-14 the spacing stays that of subnormals
   const float steps = std::nearbyint(std::ldexp(magnitude, 11 - shift));  // up to 2048
   // A rounding up to the next power of two carries into the exponent by itself.

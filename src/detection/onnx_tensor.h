@@ -1,4 +1,5 @@
-// Tensors of ONNX files. The only headers that may include this are those that deal with the file format.
+// Tensors of ONNX files. The only headers that may include this are those that deal with the file
+// format.
 #pragma once
 
 #define ONNX_ML 1
@@ -12,7 +13,8 @@
 
 namespace msf {
 
-// Decodes any numeric type; half, bfloat16 and double become float, all integers and bool int64. Errors do not name the tensor.
+// Decodes any numeric type; half, bfloat16 and double become float, all integers and bool int64.
+// Errors do not name the tensor.
 StatusOr<Tensor> DecodeTensor(const onnx::TensorProto& proto);
 
 // IEEE half precision and bfloat16 from their bits.

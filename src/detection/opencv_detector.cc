@@ -1,6 +1,7 @@
 #include "detection/opencv_detector.h"
 
 #include <fmt/format.h>
+
 #include <opencv2/dnn.hpp>
 
 #include "detection/head_decoder.h"
@@ -13,7 +14,8 @@ namespace msf {
 namespace {
 
 // Views of OpenCV's results; they live as long as `results`.
-std::vector<NetworkOutput> Views(const std::vector<cv::Mat>& results, const std::vector<std::string>& names) {
+std::vector<NetworkOutput> Views(const std::vector<cv::Mat>& results,
+                                 const std::vector<std::string>& names) {
   std::vector<NetworkOutput> views;
   for (size_t i = 0; i < results.size(); ++i) {
     NetworkOutput view;
@@ -47,8 +49,9 @@ class OpenCvDetector : public Detector {
     } catch (const cv::Exception& error) {
       return Status::Error("OpenCV could not run the detector: " + error.err);
     }
-    std::vector<Detection> found = decoder_.Decode(Views(results, output_names_), static_cast<float>(options_.confidence),
-                                                   options_.every_class);
+    std::vector<Detection> found =
+        decoder_.Decode(Views(results, output_names_), static_cast<float>(options_.confidence),
+                        options_.every_class);
     Detections detections;
     detections.objects = SuppressOverlaps(std::move(found), static_cast<float>(options_.max_iou),
                                           static_cast<size_t>(options_.max_detections));
@@ -68,13 +71,15 @@ class OpenCvDetector : public Detector {
 
 }  // namespace
 
-StatusOr<std::unique_ptr<Detector>> MakeOpenCvDetector(const DetectorOptions& options, const std::filesystem::path& model) {
+StatusOr<std::unique_ptr<Detector>> MakeOpenCvDetector(const DetectorOptions& options,
+                                                       const std::filesystem::path& model) {
   if (options.precision != "auto" && options.precision != "fp32") {
     return Status::Error("the opencv backend computes in fp32 only, not in " + options.precision);
   }
   StatusOr<std::string> bytes = ReadModelBytes(model);
   if (!bytes.ok()) return bytes.status();
-  // Only size and names are wanted here: a network that our reader does not know may still run in OpenCV.
+  // Only size and names are wanted here: a network that our reader does not know may still run in
+  // OpenCV.
   StatusOr<Graph> graph = ParseOnnx(*bytes, model.string());
   Graph described;
   described.source = model.string();
@@ -97,9 +102,10 @@ StatusOr<std::unique_ptr<Detector>> MakeOpenCvDetector(const DetectorOptions& op
     if (!decoder.ok()) return decoder.status();
     auto class_names = ClassNamesFor(options, described, decoder->num_classes());
     if (!class_names.ok()) return class_names.status();
-    const std::string description = fmt::format("{} on OpenCV, fp32, {}x{}", model.filename().string(), size->width, size->height);
-    return std::unique_ptr<Detector>(std::make_unique<OpenCvDetector>(*std::move(class_names), *size, description, options,
-                                                                      std::move(net), *std::move(decoder)));
+    const std::string description = fmt::format(
+        "{} on OpenCV, fp32, {}x{}", model.filename().string(), size->width, size->height);
+    return std::unique_ptr<Detector>(std::make_unique<OpenCvDetector>(
+        *std::move(class_names), *size, description, options, std::move(net), *std::move(decoder)));
   } catch (const cv::Exception& error) {
     return Status::Error(model.string() + ": OpenCV cannot read or run this network: " + error.err);
   }

@@ -1,4 +1,5 @@
-// The detector that runs on OpenCV's DNN module: for networks that oneDNN's reader does not know, and as a cross-check.
+// The detector that runs on OpenCV's DNN module: for networks that oneDNN's reader does not know,
+// and as a cross-check.
 #pragma once
 
 #include "detection/detector.h"
@@ -6,6 +7,7 @@
 namespace msf {
 
 // float32 only. The model file may have open sizes; they are fixed before OpenCV reads it.
-StatusOr<std::unique_ptr<Detector>> MakeOpenCvDetector(const DetectorOptions& options, const std::filesystem::path& model);
+StatusOr<std::unique_ptr<Detector>> MakeOpenCvDetector(const DetectorOptions& options,
+                                                       const std::filesystem::path& model);
 
 }  // namespace msf

@@ -3,8 +3,9 @@
 
 namespace msf {
 
-// While it lives, OpenMP regions that this thread opens have `threads` threads. The setting belongs to the calling thread alone: other
-// threads of the program keep theirs. One thread means that no OpenMP worker is started, so none spins beside the SLAM threads.
+// While it lives, OpenMP regions that this thread opens have `threads` threads. The setting belongs
+// to the calling thread alone: other threads of the program keep theirs. One thread means that no
+// OpenMP worker is started, so none spins beside the SLAM threads.
 class OpenMpThreadsScope {
  public:
   explicit OpenMpThreadsScope(int threads);

@@ -1,8 +1,8 @@
 #include "detection/operators.h"
 
-#include <map>
-
 #include <fmt/format.h>
+
+#include <map>
 
 namespace msf {
 namespace {
@@ -65,8 +65,8 @@ StatusOr<std::vector<ResultInfo>> InferShapes(const InferContext& context) {
   if (node.outputs.empty()) return error("has no output");
   const int count = static_cast<int>(context.inputs.size());
   if (count < op->min_inputs || count > op->max_inputs) {
-    return error(fmt::format("has {} inputs, {} to {} make sense", count, op->min_inputs,
-                             op->max_inputs));
+    return error(
+        fmt::format("has {} inputs, {} to {} make sense", count, op->min_inputs, op->max_inputs));
   }
   for (int i = 0; i < op->min_inputs; ++i) {
     if (!context.Has(static_cast<size_t>(i))) return error(fmt::format("lacks input {}", i));

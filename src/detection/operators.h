@@ -1,6 +1,7 @@
-// The operators a network may contain: for each the shape it yields and a plain implementation that serves to fold constants,
-// to run the operators that are too rare to be worth a fast path, and as the reference of the tests.
-// Semantics: the ONNX operator specification, opsets 7 to 19; float32 and integers only.
+// The operators a network may contain: for each the shape it yields and a plain implementation that
+// serves to fold constants, to run the operators that are too rare to be worth a fast path, and as
+// the reference of the tests. Semantics: the ONNX operator specification, opsets 7 to 19; float32
+// and integers only.
 #pragma once
 
 #include <string_view>

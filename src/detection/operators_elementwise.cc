@@ -124,31 +124,45 @@ template <typename T>
 using Plain = std::type_identity_t<T>;
 struct MinOf {
   template <typename T>
-  static T Of(T a, Plain<T> b) { return std::min(a, b); }
+  static T Of(T a, Plain<T> b) {
+    return std::min(a, b);
+  }
 };
 struct MaxOf {
   template <typename T>
-  static T Of(T a, Plain<T> b) { return std::max(a, b); }
+  static T Of(T a, Plain<T> b) {
+    return std::max(a, b);
+  }
 };
 struct EqualOf {
   template <typename T>
-  static int64_t Of(T a, Plain<T> b) { return a == b; }
+  static int64_t Of(T a, Plain<T> b) {
+    return a == b;
+  }
 };
 struct LessOf {
   template <typename T>
-  static int64_t Of(T a, Plain<T> b) { return a < b; }
+  static int64_t Of(T a, Plain<T> b) {
+    return a < b;
+  }
 };
 struct GreaterOf {
   template <typename T>
-  static int64_t Of(T a, Plain<T> b) { return a > b; }
+  static int64_t Of(T a, Plain<T> b) {
+    return a > b;
+  }
 };
 struct AndOf {
   template <typename T>
-  static int64_t Of(T a, Plain<T> b) { return a != 0 && b != 0; }
+  static int64_t Of(T a, Plain<T> b) {
+    return a != 0 && b != 0;
+  }
 };
 struct OrOf {
   template <typename T>
-  static int64_t Of(T a, Plain<T> b) { return a != 0 || b != 0; }
+  static int64_t Of(T a, Plain<T> b) {
+    return a != 0 || b != 0;
+  }
 };
 
 template <typename F>
@@ -204,13 +218,13 @@ Status ComputeClip(const ComputeContext& c) {
   return Status::Ok();
 }
 
-// ONNX element types: 1 float, 10 half, 11 double, 16 bfloat16; everything else we hold as integers.
+// ONNX element types: 1 float, 10 half, 11 double, 16 bfloat16; everything else we hold as
+// integers.
 Results InferCast(const InferContext& c) {
   const int64_t to = c.node.Int("to", 0);
   if (to == 8 || to == 14 || to == 15) return Status::Error("casts to text or complex numbers");
   const bool floats = to == 1 || to == 10 || to == 11 || to == 16;
-  return std::vector<ResultInfo>{
-      {c.shape(0), floats ? ElementType::kFloat : ElementType::kInt}};
+  return std::vector<ResultInfo>{{c.shape(0), floats ? ElementType::kFloat : ElementType::kInt}};
 }
 
 int64_t ToInt(float x) {

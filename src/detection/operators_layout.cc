@@ -107,8 +107,8 @@ Results InferSqueeze(const InferContext& c) {
 }
 
 Results InferUnsqueeze(const InferContext& c) {
-  const size_t added = c.Has(1) ? static_cast<size_t>(NumElements(c.shape(1)))
-                                : c.node.Ints("axes").size();
+  const size_t added =
+      c.Has(1) ? static_cast<size_t>(NumElements(c.shape(1))) : c.node.Ints("axes").size();
   if (added > 8) return Status::Error("adds too many dimensions");
   StatusOr<std::vector<int64_t>> axes = Axes(c, c.shape(0).size() + added);
   if (!axes.ok()) return axes.status();
@@ -163,7 +163,8 @@ Results InferConcat(const InferContext& c) {
     const size_t at = static_cast<size_t>(*axis);
     const int64_t size = other[at];
     other[at] = shape[at];
-    if (other != shape) return Status::Error("joins " + ToString(shape) + " and " + ToString(c.shape(i)));
+    if (other != shape)
+      return Status::Error("joins " + ToString(shape) + " and " + ToString(c.shape(i)));
     shape[at] += size;
   }
   return One(shape, c.inputs[0].type);
@@ -196,7 +197,8 @@ Results InferSplit(const InferContext& c) {
   const int64_t parts = static_cast<int64_t>(c.node.outputs.size());
   if (sizes.empty()) {
     const int64_t part = (size + parts - 1) / parts;
-    for (int64_t i = 0; i < parts; ++i) sizes.push_back(std::clamp<int64_t>(size - i * part, 0, part));
+    for (int64_t i = 0; i < parts; ++i)
+      sizes.push_back(std::clamp<int64_t>(size - i * part, 0, part));
   }
   int64_t sum = 0;
   std::vector<ResultInfo> results;

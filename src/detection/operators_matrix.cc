@@ -57,7 +57,9 @@ Status ComputeMatMul(const ComputeContext& c) {
   return Status::Ok();
 }
 
-int64_t SoftmaxAxis(const Node& node, int64_t opset) { return node.Int("axis", opset < 13 ? 1 : -1); }
+int64_t SoftmaxAxis(const Node& node, int64_t opset) {
+  return node.Int("axis", opset < 13 ? 1 : -1);
+}
 
 Results InferSoftmax(const InferContext& c) {
   if (c.inputs[0].type != ElementType::kFloat) return Status::Error("needs floating point input");
@@ -73,7 +75,8 @@ Results InferSoftmax(const InferContext& c) {
 Status ComputeSoftmax(const ComputeContext& c) {
   const Shape& shape = c.inputs[0].shape;
   if (NumElements(shape) == 0) return Status::Ok();
-  const size_t axis = static_cast<size_t>(*NormalizeAxis(SoftmaxAxis(c.node, c.opset), shape.size()));
+  const size_t axis =
+      static_cast<size_t>(*NormalizeAxis(SoftmaxAxis(c.node, c.opset), shape.size()));
   const size_t inner = static_cast<size_t>(DenseStrides(shape)[axis]);
   const size_t count = static_cast<size_t>(shape[axis]);
   const size_t block = inner * count;
@@ -97,7 +100,8 @@ Status ComputeSoftmax(const ComputeContext& c) {
   return Status::Ok();
 }
 
-StatusOr<std::vector<bool>> ReducedAxes(const Node& node, size_t rank, const std::vector<int64_t>& axes) {
+StatusOr<std::vector<bool>> ReducedAxes(const Node& node, size_t rank,
+                                        const std::vector<int64_t>& axes) {
   std::vector<bool> reduced(rank, axes.empty() && node.Int("noop_with_empty_axes", 0) == 0);
   for (const int64_t axis : axes) {
     StatusOr<int64_t> normal = NormalizeAxis(axis, rank);

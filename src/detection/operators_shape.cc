@@ -1,4 +1,5 @@
-// Operators that compute shapes and indices: exporters with symbolic sizes leave them in the graph, a fixed size folds them away.
+// Operators that compute shapes and indices: exporters with symbolic sizes leave them in the graph,
+// a fixed size folds them away.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -43,7 +44,8 @@ Status ComputeGather(const ComputeContext& c) {
   const int64_t size = x.shape[axis];
   const Shape strides = DenseStrides(x.shape);
   const int64_t inner = strides[axis];
-  const int64_t outer = NumElements(Shape(x.shape.begin(), x.shape.begin() + static_cast<int64_t>(axis)));
+  const int64_t outer =
+      NumElements(Shape(x.shape.begin(), x.shape.begin() + static_cast<int64_t>(axis)));
   size_t to = 0;
   for (int64_t o = 0; o < outer; ++o) {
     for (int64_t index : c.inputs[1].ints) {
@@ -123,7 +125,8 @@ StatusOr<std::vector<SliceRange>> Ranges(const Shape& x, const SliceBounds& boun
     StatusOr<int64_t> axis = NormalizeAxis(bounds.axes[i], x.size());
     if (!axis.ok()) return axis.status();
     const size_t at = static_cast<size_t>(*axis);
-    StatusOr<SliceRange> range = MakeRange(x[at], bounds.starts[i], bounds.ends[i], bounds.steps[i]);
+    StatusOr<SliceRange> range =
+        MakeRange(x[at], bounds.starts[i], bounds.ends[i], bounds.steps[i]);
     if (!range.ok()) return range.status();
     ranges[at] = *range;
   }
@@ -131,8 +134,8 @@ StatusOr<std::vector<SliceRange>> Ranges(const Shape& x, const SliceBounds& boun
 }
 
 Results InferSlice(const InferContext& c) {
-  StatusOr<SliceBounds> bounds = ReadBounds(
-      c.node, c.inputs.size(), [&](size_t i) -> StatusOr<std::vector<int64_t>> {
+  StatusOr<SliceBounds> bounds =
+      ReadBounds(c.node, c.inputs.size(), [&](size_t i) -> StatusOr<std::vector<int64_t>> {
         if (!c.Has(i)) return std::vector<int64_t>();
         return c.ConstantInts(i);
       });
@@ -147,8 +150,8 @@ Results InferSlice(const InferContext& c) {
 Status ComputeSlice(const ComputeContext& c) {
   const InputView& x = c.inputs[0];
   const OutputView& y = c.outputs[0];
-  StatusOr<SliceBounds> bounds = ReadBounds(
-      c.node, c.inputs.size(), [&](size_t i) -> StatusOr<std::vector<int64_t>> {
+  StatusOr<SliceBounds> bounds =
+      ReadBounds(c.node, c.inputs.size(), [&](size_t i) -> StatusOr<std::vector<int64_t>> {
         return std::vector<int64_t>(c.inputs[i].ints.begin(), c.inputs[i].ints.end());
       });
   if (!bounds.ok()) return bounds.status();
@@ -187,7 +190,8 @@ Results InferConstantOfShape(const InferContext& c) {
 Status ComputeConstantOfShape(const ComputeContext& c) {
   const Tensor* value = FillValue(c.node);
   const OutputView& y = c.outputs[0];
-  std::fill(y.floats.begin(), y.floats.end(), value && !value->floats.empty() ? value->floats[0] : 0);
+  std::fill(y.floats.begin(), y.floats.end(),
+            value && !value->floats.empty() ? value->floats[0] : 0);
   std::fill(y.ints.begin(), y.ints.end(), value && !value->ints.empty() ? value->ints[0] : 0);
   return Status::Ok();
 }

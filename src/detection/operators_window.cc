@@ -41,11 +41,16 @@ Results InferConv(const InferContext& c) {
 
 float Activate(float x, const Epilogue& e) {
   switch (e.activation) {
-    case Activation::kNone: return x;
-    case Activation::kSilu: return x / (1 + std::exp(-x));
-    case Activation::kRelu: return std::max(x, 0.0f);
-    case Activation::kLeakyRelu: return x < 0 ? x * e.alpha : x;
-    case Activation::kSigmoid: return 1 / (1 + std::exp(-x));
+    case Activation::kNone:
+      return x;
+    case Activation::kSilu:
+      return x / (1 + std::exp(-x));
+    case Activation::kRelu:
+      return std::max(x, 0.0f);
+    case Activation::kLeakyRelu:
+      return x < 0 ? x * e.alpha : x;
+    case Activation::kSigmoid:
+      return 1 / (1 + std::exp(-x));
   }
   return x;
 }
@@ -58,7 +63,8 @@ float Finish(float sum, const Epilogue& e, int64_t channel, float addend) {
   return e.add_first ? sum : sum + addend;
 }
 
-// One output pixel: the window over one group of channels. Double, as this is what others are compared with.
+// One output pixel: the window over one group of channels. Double, as this is what others are
+// compared with.
 double SumWindow(const InputView& x, const InputView& w, const Window& win, int64_t n, int64_t out,
                  int64_t first_channel, int64_t oy, int64_t ox) {
   const int64_t height = x.shape[2], width = x.shape[3];
@@ -122,7 +128,8 @@ Results InferPool(const InferContext& c) {
       return Status::Error("has padding as wide as its kernel");
     }
   }
-  if (c.node.outputs.size() > 1) return Status::Error("is asked for indices, which is not supported");
+  if (c.node.outputs.size() > 1)
+    return Status::Error("is asked for indices, which is not supported");
   return Image(c.shape(0), c.shape(0)[1], window->output[0], window->output[1]);
 }
 
@@ -159,7 +166,8 @@ Status ComputePool(const ComputeContext& c) {
   const int64_t plane = x.shape[2] * x.shape[3];
   size_t to = 0;
   for (int64_t p = 0; p < y.shape[0] * y.shape[1]; ++p) {
-    const auto pixels = x.floats.subspan(static_cast<size_t>(p * plane), static_cast<size_t>(plane));
+    const auto pixels =
+        x.floats.subspan(static_cast<size_t>(p * plane), static_cast<size_t>(plane));
     for (int64_t oy = 0; oy < y.shape[2]; ++oy) {
       for (int64_t ox = 0; ox < y.shape[3]; ++ox) {
         y.floats[to++] = PoolPixel<kMax>(c.node, pixels, x.shape, *window, oy, ox);
@@ -170,7 +178,8 @@ Status ComputePool(const ComputeContext& c) {
 }
 
 Results InferGlobalPool(const InferContext& c) {
-  if (c.shape(0).size() != 4 || NumElements(c.shape(0)) == 0) return Status::Error("works on images only");
+  if (c.shape(0).size() != 4 || NumElements(c.shape(0)) == 0)
+    return Status::Error("works on images only");
   return Image(c.shape(0), c.shape(0)[1], 1, 1);
 }
 
@@ -187,7 +196,8 @@ Status ComputeGlobalPool(const ComputeContext& c) {
 Results InferPerChannel(const InferContext& c) {
   if (c.shape(0).size() < 2) return Status::Error("needs a channel dimension");
   for (size_t i = 1; i < c.inputs.size(); ++i) {
-    if (!c.Has(i) || c.shape(i) != Shape{c.shape(0)[1]} || c.inputs[i].type != ElementType::kFloat) {
+    if (!c.Has(i) || c.shape(i) != Shape{c.shape(0)[1]} ||
+        c.inputs[i].type != ElementType::kFloat) {
       return Status::Error("has parameters that do not fit " + ToString(c.shape(0)));
     }
   }
@@ -215,9 +225,8 @@ Status ComputeBatchNorm(const ComputeContext& c) {
 }
 
 Status ComputeChannelAffine(const ComputeContext& c) {
-  ApplyPerChannel(c, [&](float x, size_t k) {
-    return x * c.inputs[1].floats[k] + c.inputs[2].floats[k];
-  });
+  ApplyPerChannel(
+      c, [&](float x, size_t k) { return x * c.inputs[1].floats[k] + c.inputs[2].floats[k]; });
   return Status::Ok();
 }
 
@@ -233,7 +242,8 @@ StatusOr<Shape> ResizedShape(const InferContext& c) {
   Shape shape;
   for (size_t i = 0; i < x.size(); ++i) {
     const double size = std::floor(static_cast<double>(x[i]) * c.inputs[at].constant->floats[i]);
-    if (!(size >= 0 && size < static_cast<double>(kMaxElements))) return Status::Error("has a bad scale");
+    if (!(size >= 0 && size < static_cast<double>(kMaxElements)))
+      return Status::Error("has a bad scale");
     shape.push_back(static_cast<int64_t>(size));
   }
   return shape;
@@ -254,8 +264,10 @@ Results InferResize(const InferContext& c) {
   const Shape& x = c.shape(0);
   StatusOr<Shape> shape = ResizedShape(c);
   if (!shape.ok()) return shape.status();
-  const bool image = x.size() == 4 && shape->size() == 4 && (*shape)[0] == x[0] && (*shape)[1] == x[1];
-  if (!image || c.inputs[0].type != ElementType::kFloat) return Status::Error("may resize height and width only");
+  const bool image =
+      x.size() == 4 && shape->size() == 4 && (*shape)[0] == x[0] && (*shape)[1] == x[1];
+  if (!image || c.inputs[0].type != ElementType::kFloat)
+    return Status::Error("may resize height and width only");
   const bool whole = x[2] > 0 && x[3] > 0 && (*shape)[2] % x[2] == 0 && (*shape)[3] % x[3] == 0;
   if (!whole || !RepeatsPixels(c)) {
     return Status::Error("is supported for nearest neighbours and whole factors only");

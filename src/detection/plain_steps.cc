@@ -5,7 +5,8 @@ namespace {
 
 class ConvertStep : public Step {
  public:
-  ConvertStep(const Shape& shape, const void* from, const Storage& from_storage, void* to, const Storage& to_storage)
+  ConvertStep(const Shape& shape, const void* from, const Storage& from_storage, void* to,
+              const Storage& to_storage)
       : shape_(shape), from_(from), to_(to), from_storage_(from_storage), to_storage_(to_storage) {}
 
   Status Run() override {
@@ -22,10 +23,12 @@ class ConvertStep : public Step {
 
 class CopyChannelsStep : public Step {
  public:
-  CopyChannelsStep(std::vector<ChannelCopy> copies, size_t pixels) : copies_(std::move(copies)), pixels_(pixels) {}
+  CopyChannelsStep(std::vector<ChannelCopy> copies, size_t pixels)
+      : copies_(std::move(copies)), pixels_(pixels) {}
 
   Status Run() override {
-    for (const ChannelCopy& c : copies_) CopyChannels(c.from, c.source, c.to, c.target, c.run_bytes, pixels_);
+    for (const ChannelCopy& c : copies_)
+      CopyChannels(c.from, c.source, c.to, c.target, c.run_bytes, pixels_);
     return Status::Ok();
   }
 
@@ -36,7 +39,8 @@ class CopyChannelsStep : public Step {
 
 class RepeatStep : public Step {
  public:
-  RepeatStep(const Shape& input, const Shape& output, size_t element_bytes, const void* from, void* to)
+  RepeatStep(const Shape& input, const Shape& output, size_t element_bytes, const void* from,
+             void* to)
       : height_(static_cast<size_t>(input[2])),
         width_(static_cast<size_t>(input[3])),
         pixel_bytes_(static_cast<size_t>(input[1]) * element_bytes),
@@ -73,7 +77,8 @@ class ReferenceStep : public Step {
 
 }  // namespace
 
-std::unique_ptr<Step> MakeConvertStep(const Shape& shape, const void* from, const Storage& from_storage, void* to,
+std::unique_ptr<Step> MakeConvertStep(const Shape& shape, const void* from,
+                                      const Storage& from_storage, void* to,
                                       const Storage& to_storage) {
   return std::make_unique<ConvertStep>(shape, from, from_storage, to, to_storage);
 }
@@ -82,8 +87,8 @@ std::unique_ptr<Step> MakeCopyChannelsStep(std::vector<ChannelCopy> copies, size
   return std::make_unique<CopyChannelsStep>(std::move(copies), pixels);
 }
 
-std::unique_ptr<Step> MakeRepeatStep(const Shape& input, const Shape& output, size_t element_bytes, const void* from,
-                                     void* to) {
+std::unique_ptr<Step> MakeRepeatStep(const Shape& input, const Shape& output, size_t element_bytes,
+                                     const void* from, void* to) {
   return std::make_unique<RepeatStep>(input, output, element_bytes, from, to);
 }
 

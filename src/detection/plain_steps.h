@@ -19,11 +19,12 @@ struct ChannelCopy {
   size_t run_bytes = 0;
 };
 
-std::unique_ptr<Step> MakeConvertStep(const Shape& shape, const void* from, const Storage& from_storage, void* to,
+std::unique_ptr<Step> MakeConvertStep(const Shape& shape, const void* from,
+                                      const Storage& from_storage, void* to,
                                       const Storage& to_storage);
 std::unique_ptr<Step> MakeCopyChannelsStep(std::vector<ChannelCopy> copies, size_t pixels);
-std::unique_ptr<Step> MakeRepeatStep(const Shape& input, const Shape& output, size_t element_bytes, const void* from,
-                                     void* to);
+std::unique_ptr<Step> MakeRepeatStep(const Shape& input, const Shape& output, size_t element_bytes,
+                                     const void* from, void* to);
 // `context` refers to its node, which must outlive the step.
 std::unique_ptr<Step> MakeReferenceStep(ComputeContext context);
 

@@ -1,8 +1,8 @@
 #include "detection/specialize.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "detection/operators.h"
 
@@ -56,7 +56,8 @@ class Folder {
     if (node.op == "Shape") constant = true;
     if (!constant || TooHeavyToFold(node.op)) return false;
     folded_ += count;
-    if (folded_ > kMaxFoldedElements) return Status::Error(Describe(node) + " makes constants too large");
+    if (folded_ > kMaxFoldedElements)
+      return Status::Error(Describe(node) + " makes constants too large");
     if (Status status = Fold(node); !status.ok()) {
       return Status::Error(Describe(node) + " " + status.message());
     }
@@ -83,7 +84,8 @@ class Folder {
     for (Tensor& result : results) context.outputs.emplace_back(result);
     MSF_RETURN_IF_ERROR(FindOperator(node.op)->compute(context));
     for (size_t i = 0; i < results.size(); ++i) {
-      graph_.value(node.outputs[i]).constant = std::make_shared<const Tensor>(std::move(results[i]));
+      graph_.value(node.outputs[i]).constant =
+          std::make_shared<const Tensor>(std::move(results[i]));
     }
     return Status::Ok();
   }
@@ -110,9 +112,10 @@ StatusOr<Graph> Specialize(Graph graph, int64_t height, int64_t width) {
   if (!declared.ok()) return declared.status();
   const auto fits = [](int64_t wanted, int64_t fixed) { return fixed == -1 || fixed == wanted; };
   if (!fits(height, declared->height) || !fits(width, declared->width)) {
-    return Status::Error(fmt::format(
-        "{}: was exported for images of {}x{} only and cannot run at {}x{}; use its own size or export with open sizes",
-        graph.source, declared->width, declared->height, width, height));
+    return Status::Error(
+        fmt::format("{}: was exported for images of {}x{} only and cannot run at {}x{}; use its "
+                    "own size or export with open sizes",
+                    graph.source, declared->width, declared->height, width, height));
   }
   Value& input = graph.value(graph.inputs[0]);
   input.shape = {1, 3, height, width};
@@ -121,7 +124,8 @@ StatusOr<Graph> Specialize(Graph graph, int64_t height, int64_t width) {
   for (const ValueId output : graph.outputs) {
     const Value& value = graph.value(output);
     if (value.constant || value.type != ElementType::kFloat) {
-      return Status::Error(fmt::format("{}: output '{}' does not depend on the image", graph.source, value.name));
+      return Status::Error(
+          fmt::format("{}: output '{}' does not depend on the image", graph.source, value.name));
     }
   }
   return graph;

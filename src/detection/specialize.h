@@ -1,4 +1,5 @@
-// Fixes the input size of a network: all shapes become known and everything that depends only on shapes becomes constant.
+// Fixes the input size of a network: all shapes become known and everything that depends only on
+// shapes becomes constant.
 #pragma once
 
 #include "detection/graph.h"
@@ -14,8 +15,9 @@ struct InputSize {
 // The size that the model file prescribes, or an error when its input is not an image [1, 3, H, W].
 StatusOr<InputSize> DeclaredInputSize(const Graph& graph);
 
-// The graph for images of height x width. Afterwards every value has a shape and every remaining node depends on the image.
-// An error names the file and, when an operator cannot be used, its node.
+// The graph for images of height x width. Afterwards every value has a shape and every remaining
+// node depends on the image. An error names the file and, when an operator cannot be used, its
+// node.
 StatusOr<Graph> Specialize(Graph graph, int64_t height, int64_t width);
 
 }  // namespace msf

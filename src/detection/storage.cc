@@ -75,9 +75,15 @@ void ConvertElements(const Shape& shape, const void* from, const From& from_code
 template <typename Use>
 void WithCodec(const Storage& storage, const Use& use) {
   switch (storage.format) {
-    case NumberFormat::kFloat32: use(FloatCodec()); return;
-    case NumberFormat::kBfloat16: use(Bfloat16Codec()); return;
-    case NumberFormat::kUint8: use(Uint8Codec(storage)); return;
+    case NumberFormat::kFloat32:
+      use(FloatCodec());
+      return;
+    case NumberFormat::kBfloat16:
+      use(Bfloat16Codec());
+      return;
+    case NumberFormat::kUint8:
+      use(Uint8Codec(storage));
+      return;
   }
 }
 
@@ -85,9 +91,12 @@ void WithCodec(const Storage& storage, const Use& use) {
 
 size_t BytesPerElement(NumberFormat format) {
   switch (format) {
-    case NumberFormat::kFloat32: return 4;
-    case NumberFormat::kBfloat16: return 2;
-    case NumberFormat::kUint8: return 1;
+    case NumberFormat::kFloat32:
+      return 4;
+    case NumberFormat::kBfloat16:
+      return 2;
+    case NumberFormat::kUint8:
+      return 1;
   }
   return 0;
 }
@@ -118,12 +127,18 @@ void CopyChannels(const uint8_t* from, const ChannelRun& source, uint8_t* to,
     }
   };
   switch (run_bytes) {  // sizes known to the compiler become single moves
-    case 8: return copy(std::integral_constant<size_t, 8>());
-    case 16: return copy(std::integral_constant<size_t, 16>());
-    case 32: return copy(std::integral_constant<size_t, 32>());
-    case 64: return copy(std::integral_constant<size_t, 64>());
-    case 128: return copy(std::integral_constant<size_t, 128>());
-    default: return copy(run_bytes);
+    case 8:
+      return copy(std::integral_constant<size_t, 8>());
+    case 16:
+      return copy(std::integral_constant<size_t, 16>());
+    case 32:
+      return copy(std::integral_constant<size_t, 32>());
+    case 64:
+      return copy(std::integral_constant<size_t, 64>());
+    case 128:
+      return copy(std::integral_constant<size_t, 128>());
+    default:
+      return copy(run_bytes);
   }
 }
 
@@ -134,7 +149,8 @@ void RepeatPixels(const uint8_t* from, size_t height, size_t width, size_t pixel
     uint8_t* row = to + y * factor_y * row_bytes;
     uint8_t* pixel = row;
     for (size_t x = 0; x < width; ++x, from += pixel_bytes) {
-      for (size_t i = 0; i < factor_x; ++i, pixel += pixel_bytes) std::memcpy(pixel, from, pixel_bytes);
+      for (size_t i = 0; i < factor_x; ++i, pixel += pixel_bytes)
+        std::memcpy(pixel, from, pixel_bytes);
     }
     for (size_t i = 1; i < factor_y; ++i) std::memcpy(row + i * row_bytes, row, row_bytes);
   }

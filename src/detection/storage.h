@@ -10,8 +10,8 @@ namespace msf {
 
 enum class NumberFormat { kFloat32, kBfloat16, kUint8 };
 
-// One value's memory. Images [1, C, H, W] that fast operators work on lie channels last (the channels of a pixel side by side,
-// then the pixels of a row); everything else is dense row-major.
+// One value's memory. Images [1, C, H, W] that fast operators work on lie channels last (the
+// channels of a pixel side by side, then the pixels of a row); everything else is dense row-major.
 struct Storage {
   NumberFormat format = NumberFormat::kFloat32;
   bool channels_last = false;
@@ -28,7 +28,8 @@ size_t NumBytes(const Shape& shape, const Storage& storage);
 // Rounds to the nearest bfloat16, ties to even.
 uint16_t FloatToBfloat16(float x);
 
-// Copies a value from one storage to another: number format, scale and order of the elements may differ. uint8 saturates.
+// Copies a value from one storage to another: number format, scale and order of the elements may
+// differ. uint8 saturates.
 void Convert(const Shape& shape, const void* from, const Storage& from_storage, void* to,
              const Storage& to_storage);
 
@@ -39,8 +40,8 @@ struct ChannelRun {
 };
 
 // Copies `run_bytes` of each of `pixels` pixels.
-void CopyChannels(const uint8_t* from, const ChannelRun& source, uint8_t* to, const ChannelRun& target,
-                  size_t run_bytes, size_t pixels);
+void CopyChannels(const uint8_t* from, const ChannelRun& source, uint8_t* to,
+                  const ChannelRun& target, size_t run_bytes, size_t pixels);
 
 // Enlarges an image of height x width by whole factors, repeating pixels of `pixel_bytes`.
 void RepeatPixels(const uint8_t* from, size_t height, size_t width, size_t pixel_bytes,

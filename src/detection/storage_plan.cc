@@ -29,18 +29,21 @@ bool IsFastConvolution(const Graph& graph, const Node& node) {
   return NumElements(graph.value(node.inputs[1]).shape) > 0;
 }
 
-// Pools that ceil_mode extends beyond the padding, or that average over padding, are left to the plain implementation.
+// Pools that ceil_mode extends beyond the padding, or that average over padding, are left to the
+// plain implementation.
 bool IsFastPool(const Graph& graph, const Node& node) {
   const std::vector<int64_t> kernel = node.Ints("kernel_shape");
-  const StatusOr<Window> w = ReadWindow(node, graph.value(node.inputs[0]).shape, kernel[0], kernel[1]);
+  const StatusOr<Window> w =
+      ReadWindow(node, graph.value(node.inputs[0]).shape, kernel[0], kernel[1]);
   if (!w.ok() || w->dilation[0] != 1 || w->dilation[1] != 1) return false;
   const int64_t padding = w->pad_begin[0] + w->pad_begin[1] + w->pad_end[0] + w->pad_end[1];
   return node.Int("ceil_mode", 0) == 0 && (node.op == "MaxPool" || padding == 0);
 }
 
 bool IsElementwise(const std::string& op) {
-  static const std::set<std::string> kOps = {"Sigmoid", "Silu", "Relu", "LeakyRelu", "Tanh", "Exp", "Sqrt",
-                                             "HardSwish", "HardSigmoid", "Add", "Sub", "Mul", "Div", "Neg"};
+  static const std::set<std::string> kOps = {"Sigmoid", "Silu", "Relu",      "LeakyRelu",   "Tanh",
+                                             "Exp",     "Sqrt", "HardSwish", "HardSigmoid", "Add",
+                                             "Sub",     "Mul",  "Div",       "Neg"};
   return kOps.count(op) > 0;
 }
 
@@ -55,7 +58,8 @@ class Planner {
   Planner(const Graph& graph, NetworkPrecision precision, const ActivationRanges& ranges)
       : graph_(graph), precision_(precision), ranges_(ranges), parent_(graph.values.size()) {
     std::iota(parent_.begin(), parent_.end(), 0);
-    high_ = precision == NetworkPrecision::kFloat32 || (precision == NetworkPrecision::kInt8 && !HasFastBfloat16())
+    high_ = precision == NetworkPrecision::kFloat32 ||
+                    (precision == NetworkPrecision::kInt8 && !HasFastBfloat16())
                 ? NumberFormat::kFloat32
                 : NumberFormat::kBfloat16;
   }
@@ -67,7 +71,8 @@ class Planner {
     plan_.storage.assign(graph_.values.size(), Storage());
     plan_.storage[static_cast<size_t>(graph_.inputs[0])] = input;
     for (size_t v = 0; v < graph_.values.size(); ++v) {
-      if (Root(static_cast<int>(v)) == static_cast<int>(v) && IsFastValue(static_cast<ValueId>(v))) {
+      if (Root(static_cast<int>(v)) == static_cast<int>(v) &&
+          IsFastValue(static_cast<ValueId>(v))) {
         DecideGroup(static_cast<int>(v));
       }
     }
@@ -79,7 +84,8 @@ class Planner {
   void FindMakers() {
     maker_.assign(graph_.values.size(), -1);
     for (size_t i = 0; i < graph_.nodes.size(); ++i) {
-      for (const ValueId output : graph_.nodes[i].outputs) maker_[static_cast<size_t>(output)] = static_cast<int>(i);
+      for (const ValueId output : graph_.nodes[i].outputs)
+        maker_[static_cast<size_t>(output)] = static_cast<int>(i);
     }
   }
 
@@ -115,13 +121,15 @@ class Planner {
   // A convolution that may run in 8 bits as far as accuracy is concerned.
   bool ToleratesInt8(size_t index) const {
     const Node& node = graph_.nodes[index];
-    if (precision_ != NetworkPrecision::kInt8 || plan_.kinds[index] != NodeKind::kConvolution) return false;
+    if (precision_ != NetworkPrecision::kInt8 || plan_.kinds[index] != NodeKind::kConvolution)
+      return false;
     return !IsHead(node);
   }
 
   // Yields numbers that no later layer can mend: logits, or what attention compares.
   bool IsHead(const Node& node) const {
-    if (node.epilogue.activation != Activation::kNone || node.epilogue.addend != kNoValue) return false;
+    if (node.epilogue.activation != Activation::kNone || node.epilogue.addend != kNoValue)
+      return false;
     const ValueId result = node.outputs[0];
     for (size_t i = 0; i < graph_.nodes.size(); ++i) {
       const NodeKind kind = plan_.kinds[i];
@@ -170,11 +178,13 @@ class Planner {
 
   void DecideNode(size_t index) {
     const Node& node = graph_.nodes[index];
-    const bool is_int8 = ToleratesInt8(index) &&
-                         plan_.storage[static_cast<size_t>(node.inputs[0])].format == NumberFormat::kUint8;
+    const bool is_int8 =
+        ToleratesInt8(index) &&
+        plan_.storage[static_cast<size_t>(node.inputs[0])].format == NumberFormat::kUint8;
     plan_.compute.push_back(is_int8 ? NumberFormat::kUint8 : high_);
     if (plan_.kinds[index] != NodeKind::kElementwise) return;
-    for (const ValueId output : node.outputs) plan_.storage[static_cast<size_t>(output)].channels_last = true;
+    for (const ValueId output : node.outputs)
+      plan_.storage[static_cast<size_t>(output)].channels_last = true;
   }
 
   const Graph& graph_;
@@ -190,11 +200,13 @@ class Planner {
 
 NodeKind Classify(const Graph& graph, const Node& node) {
   const ValueId x = node.inputs.empty() ? kNoValue : node.inputs[0];
-  if (x == kNoValue || graph.IsConstant(x) || !IsSingleImage(graph, x) || !IsSingleImage(graph, node.outputs[0])) {
+  if (x == kNoValue || graph.IsConstant(x) || !IsSingleImage(graph, x) ||
+      !IsSingleImage(graph, node.outputs[0])) {
     return NodeKind::kReference;
   }
   if (node.op == "Conv" && IsFastConvolution(graph, node)) return NodeKind::kConvolution;
-  if ((node.op == "MaxPool" || node.op == "AveragePool") && IsFastPool(graph, node)) return NodeKind::kPool;
+  if ((node.op == "MaxPool" || node.op == "AveragePool") && IsFastPool(graph, node))
+    return NodeKind::kPool;
   if (node.op == "SliceChannels") return NodeKind::kSliceChannels;
   if (node.op == "Resize" || node.op == "Upsample") return NodeKind::kRepeat;
   const bool constant_piece = std::any_of(node.inputs.begin(), node.inputs.end(), [&](ValueId id) {
@@ -217,7 +229,8 @@ Storage QuantizedStorage(const ActivationRange& range) {
   return storage;
 }
 
-StoragePlan PlanStorage(const Graph& graph, NetworkPrecision precision, const ActivationRanges& ranges, const Storage& input) {
+StoragePlan PlanStorage(const Graph& graph, NetworkPrecision precision,
+                        const ActivationRanges& ranges, const Storage& input) {
   return Planner(graph, precision, ranges).Run(input);
 }
 

@@ -1,4 +1,5 @@
-// Small dense tensors of the network reader: constants, shapes and the reference operators work on them.
+// Small dense tensors of the network reader: constants, shapes and the reference operators work on
+// them.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// Networks of the shape of real detectors with random weights, and a plain interpreter to compare with.
+// Networks of the shape of real detectors with random weights, and a plain interpreter to compare
+// with.
 #pragma once
 
 #include <cmath>
@@ -13,12 +14,12 @@
 namespace msf {
 
 struct TestNetworkOptions {
-  int64_t base = 4;          // channels of the first layer; YOLOv8n has 16
+  int64_t base = 4;  // channels of the first layer; YOLOv8n has 16
   int64_t classes = 3;
-  bool msf = false;          // MSFConv blocks in the place of the stride-2 convolutions
-  bool attention = false;    // the attention block of YOLO11 behind the pyramid pooling
+  bool msf = false;            // MSFConv blocks in the place of the stride-2 convolutions
+  bool attention = false;      // the attention block of YOLO11 behind the pyramid pooling
   bool single_output = false;  // decoded boxes and scores [1, 4 + classes, anchors], else raw heads
-  int64_t height = -1;       // -1: symbolic
+  int64_t height = -1;         // -1: symbolic
   int64_t width = -1;
 };
 
@@ -53,18 +54,21 @@ class TestNetwork {
     return o_.msf ? Msf(x, in, out) : n_.ConvSilu(x, in, out, 3, 2);
   }
 
-  // The MSFConv block as specified: three branches, the pooled input added where the widths agree, norm, SiLU, 1x1.
+  // The MSFConv block as specified: three branches, the pooled input added where the widths agree,
+  // norm, SiLU, 1x1.
   std::string Msf(const std::string& x, int64_t in, int64_t out) {
     const int64_t h = out / 2;
     const std::string y = n_.ConvSilu(x, in, h, 3, 2);
-    std::vector<std::string> branches = {n_.Conv(n_.Conv(y, h, h, 3, 1, h), h, h, 1), n_.Conv(y, h, h, 3),
+    std::vector<std::string> branches = {n_.Conv(n_.Conv(y, h, h, 3, 1, h), h, h, 1),
+                                         n_.Conv(y, h, h, 3),
                                          n_.Conv(n_.Conv(y, h, h, 5, 1, h), h, h, 1)};
     if (in == h) {
       onnx::NodeProto& pool = n_.Add("AveragePool", {x});
       OnnxBuilder::Set(pool, "kernel_shape", std::vector<int64_t>{2, 2});
       OnnxBuilder::Set(pool, "strides", std::vector<int64_t>{2, 2});
       const std::string pooled = pool.output(0);
-      for (std::string& branch : branches) branch = n_.Node("Add", {n_.BatchNorm(branch, h), pooled});
+      for (std::string& branch : branches)
+        branch = n_.Node("Add", {n_.BatchNorm(branch, h), pooled});
     }
     return n_.Conv(n_.Silu(n_.BatchNorm(n_.Concat(branches), 3 * h)), 3 * h, out, 1);
   }
@@ -98,8 +102,9 @@ class TestNetwork {
     OnnxBuilder::Set(split, "axis", int64_t{2});
     OnnxBuilder::Set(split, "split", std::vector<int64_t>{key, key, value});
     const std::string q = split.output(0), k = split.output(1), v = split.output(2);
-    const std::string scores = n_.Node("Mul", {n_.Node("MatMul", {n_.Transpose(q, {0, 1, 3, 2}), k}),
-                                               n_.Floats({1}, {1 / std::sqrt(static_cast<float>(key))})});
+    const std::string scores =
+        n_.Node("Mul", {n_.Node("MatMul", {n_.Transpose(q, {0, 1, 3, 2}), k}),
+                        n_.Floats({1}, {1 / std::sqrt(static_cast<float>(key))})});
     const std::string weights = n_.Transpose(Softmax(scores), {0, 1, 3, 2});
     const std::string image = n_.Concat({n_.Ints({1}), n_.Ints({h}), size(2), size(3)}, 0);
     const std::string mixed = n_.Node("Reshape", {n_.Node("MatMul", {v, weights}), image});
@@ -116,8 +121,10 @@ class TestNetwork {
     for (const Scale& s : scales) {
       const int64_t c3 = std::max<int64_t>(o_.base * 4, std::min<int64_t>(o_.classes, 100));
       const int64_t c2 = o_.base * 4;
-      const std::string box = n_.Conv(n_.ConvSilu(n_.ConvSilu(s.map, s.channels, c2, 3), c2, c2, 3), c2, 64, 1);
-      const std::string cls = n_.Conv(n_.ConvSilu(n_.ConvSilu(s.map, s.channels, c3, 3), c3, c3, 3), c3, o_.classes, 1);
+      const std::string box =
+          n_.Conv(n_.ConvSilu(n_.ConvSilu(s.map, s.channels, c2, 3), c2, c2, 3), c2, 64, 1);
+      const std::string cls =
+          n_.Conv(n_.ConvSilu(n_.ConvSilu(s.map, s.channels, c3, 3), c3, c3, 3), c3, o_.classes, 1);
       if (!o_.single_output) {
         n_.NameOutput(box, "box_" + std::to_string(s.stride));
         n_.NameOutput(cls, "class_" + std::to_string(s.stride));
@@ -147,14 +154,17 @@ class TestNetwork {
     }
     const int64_t anchors = static_cast<int64_t>(x.size());
     x.insert(x.end(), y.begin(), y.end());
-    const std::string bin_first = n_.Transpose(n_.Reshape(boxes, {1, 4, 16, anchors}), {0, 2, 1, 3});
+    const std::string bin_first =
+        n_.Transpose(n_.Reshape(boxes, {1, 4, 16, anchors}), {0, 2, 1, 3});
     const std::string sides =
-        n_.Reshape(n_.Node("Conv", {n_.Softmax(bin_first, 1), n_.Floats({1, 16, 1, 1}, bins)}), {1, 4, anchors});
+        n_.Reshape(n_.Node("Conv", {n_.Softmax(bin_first, 1), n_.Floats({1, 16, 1, 1}, bins)}),
+                   {1, 4, anchors});
     const std::string centres = n_.Floats({1, 2, anchors}, x);
     const auto half = [&](int64_t from) {
       return n_.Node("Slice", {sides, n_.Ints({from}), n_.Ints({from + 2}), n_.Ints({1})});
     };
-    const std::string low = n_.Node("Sub", {centres, half(0)}), high = n_.Node("Add", {centres, half(2)});
+    const std::string low = n_.Node("Sub", {centres, half(0)}),
+                      high = n_.Node("Add", {centres, half(2)});
     const std::string centre = n_.Node("Div", {n_.Node("Add", {low, high}), n_.Floats({1}, {2})});
     const std::string box = n_.Node("Mul", {n_.Concat({centre, n_.Node("Sub", {high, low})}),
                                             n_.Floats({1, 1, anchors}, strides)});
@@ -176,10 +186,12 @@ inline std::map<std::string, Tensor> Interpret(const Graph& graph, const Tensor&
     for (const ValueId id : reads) {
       context.inputs.emplace_back();
       if (id == kNoValue) continue;
-      context.inputs.back() = InputView(graph.IsConstant(id) ? *graph.value(id).constant : values.at(id));
+      context.inputs.back() =
+          InputView(graph.IsConstant(id) ? *graph.value(id).constant : values.at(id));
     }
     std::vector<Tensor> results;
-    for (const ValueId id : node.outputs) results.push_back(Tensor::Zeros(graph.value(id).type, graph.value(id).shape));
+    for (const ValueId id : node.outputs)
+      results.push_back(Tensor::Zeros(graph.value(id).type, graph.value(id).shape));
     for (Tensor& result : results) context.outputs.emplace_back(result);
     const Status status = FindOperator(node.op)->compute(context);
     MSF_CHECK(status.ok(), status.message());
@@ -196,7 +208,8 @@ inline Tensor TestImage(int64_t height, int64_t width) {
   Tensor image = Tensor::Zeros(ElementType::kFloat, {1, 3, height, width});
   for (size_t i = 0; i < image.floats.size(); ++i) {
     const float t = static_cast<float>(i);
-    image.floats[i] = 0.5f + 0.3f * std::sin(t * 0.05f) + 0.19f * std::sin(t * 1.7f + std::floor(t / 97.0f));
+    image.floats[i] =
+        0.5f + 0.3f * std::sin(t * 0.05f) + 0.19f * std::sin(t * 1.7f + std::floor(t / 97.0f));
     image.floats[i] = std::round(image.floats[i] * 255.0f) / 255.0f;
   }
   return image;

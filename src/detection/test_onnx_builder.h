@@ -32,7 +32,8 @@ class OnnxBuilder {
     return tensor.name();
   }
   std::string Ints(const std::vector<int64_t>& values) {
-    onnx::TensorProto& tensor = Initializer({static_cast<int64_t>(values.size())}, onnx::TensorProto::INT64);
+    onnx::TensorProto& tensor =
+        Initializer({static_cast<int64_t>(values.size())}, onnx::TensorProto::INT64);
     for (const int64_t value : values) tensor.add_int64_data(value);
     return tensor.name();
   }
@@ -45,7 +46,8 @@ class OnnxBuilder {
   }
 
   // Adds a node with `outputs` results; attributes are set on the returned reference.
-  onnx::NodeProto& Add(const std::string& op, const std::vector<std::string>& inputs, int outputs = 1) {
+  onnx::NodeProto& Add(const std::string& op, const std::vector<std::string>& inputs,
+                       int outputs = 1) {
     onnx::NodeProto& node = *graph().add_node();
     node.set_op_type(op);
     node.set_name(op + "_" + std::to_string(graph().node_size()));
@@ -62,7 +64,8 @@ class OnnxBuilder {
     a.set_type(onnx::AttributeProto::INT);
     a.set_i(value);
   }
-  static void Set(onnx::NodeProto& node, const std::string& key, const std::vector<int64_t>& values) {
+  static void Set(onnx::NodeProto& node, const std::string& key,
+                  const std::vector<int64_t>& values) {
     onnx::AttributeProto& a = *node.add_attribute();
     a.set_name(key);
     a.set_type(onnx::AttributeProto::INTS);
@@ -76,8 +79,8 @@ class OnnxBuilder {
   }
 
   // A convolution with random weights that keeps the size of numbers; "same" padding.
-  std::string Conv(const std::string& x, int64_t in, int64_t out, int64_t kernel, int64_t stride = 1,
-                   int64_t group = 1) {
+  std::string Conv(const std::string& x, int64_t in, int64_t out, int64_t kernel,
+                   int64_t stride = 1, int64_t group = 1) {
     const float fan_in = static_cast<float>(in / group * kernel * kernel);
     const std::string weights = Random({out, in / group, kernel, kernel}, 1.6f / std::sqrt(fan_in));
     onnx::NodeProto& node = Add("Conv", {x, weights, Random({out}, 0.3f)});
@@ -88,7 +91,8 @@ class OnnxBuilder {
     return node.output(0);
   }
   std::string Silu(const std::string& x) { return Node("Mul", {x, Node("Sigmoid", {x})}); }
-  std::string ConvSilu(const std::string& x, int64_t in, int64_t out, int64_t kernel, int64_t stride = 1) {
+  std::string ConvSilu(const std::string& x, int64_t in, int64_t out, int64_t kernel,
+                       int64_t stride = 1) {
     return Silu(Conv(x, in, out, kernel, stride));
   }
   std::string BatchNorm(const std::string& x, int64_t channels) {
@@ -157,7 +161,8 @@ class OnnxBuilder {
   StatusOr<Graph> Parse() const { return ParseOnnx(Bytes(), "test.onnx"); }
 
  private:
-  static void Describe(onnx::ValueInfoProto& info, const std::string& name, const std::vector<int64_t>& dims) {
+  static void Describe(onnx::ValueInfoProto& info, const std::string& name,
+                       const std::vector<int64_t>& dims) {
     info.set_name(name);
     auto& type = *info.mutable_type()->mutable_tensor_type();
     type.set_elem_type(onnx::TensorProto::FLOAT);

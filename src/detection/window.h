@@ -16,6 +16,7 @@ struct Window {
 };
 
 // Reads strides, pads, dilations, auto_pad and ceil_mode of a node whose input is [N, C, H, W].
-StatusOr<Window> ReadWindow(const Node& node, const Shape& input, int64_t kernel_h, int64_t kernel_w);
+StatusOr<Window> ReadWindow(const Node& node, const Shape& input, int64_t kernel_h,
+                            int64_t kernel_w);
 
 }  // namespace msf
