@@ -58,9 +58,10 @@ double ColorSensor::ExposureAt(double time_s) const {
          (1 + options_.exposure_jump * jump.Uniform(-1, 1));
 }
 
-cv::Mat ColorSensor::Expose(const cv::Mat& color, double time_s, Random random) const {
+cv::Mat ColorSensor::Expose(const cv::Mat& color, double time_s, double light,
+                            Random random) const {
   cv::Mat picture(color.size(), CV_8UC3);
-  const float gain = static_cast<float>(ExposureAt(time_s));
+  const float gain = static_cast<float>(light * ExposureAt(time_s));
   const float noise_level = static_cast<float>(options_.noise);
   for (int y = 0; y < color.rows; ++y) {
     const auto* in = reinterpret_cast<const Color4f*>(color.ptr(y));

@@ -39,8 +39,9 @@ class ColorSensor {
  public:
   ColorSensor(const ColorSensorOptions& options, const Camera& camera, Random random);
 
-  // 8-bit BGR image of a rendered picture (32-bit float, 4 channels) taken at `time_s`.
-  cv::Mat Expose(const cv::Mat& color, double time_s, Random random) const;
+  // 8-bit BGR image of a rendered picture (32-bit float, 4 channels) taken at `time_s` under
+  // `light`, the share of the usual light.
+  cv::Mat Expose(const cv::Mat& color, double time_s, double light, Random random) const;
   // Brightness factor at a time.
   double ExposureAt(double time_s) const;
 

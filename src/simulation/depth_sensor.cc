@@ -22,6 +22,9 @@ constexpr float kEdgeDisparity_px = 1.0f;
 Status DepthSensorOptions::Check() const {
   if (!(noise_per_m >= 0 && noise_per_m < 0.1))
     return Status::Error("depth.noise_per_m must be in [0, 0.1)");
+  if (!(distortion_px >= 0 && distortion_px < 1)) {
+    return Status::Error("depth.distortion_px must be in [0, 1)");
+  }
   if (!(disparity_steps > 0)) return Status::Error("depth.disparity_steps must be positive");
   if (!(nearest_m >= 0 && farthest_m > nearest_m))
     return Status::Error("depth: farthest_m must exceed nearest_m >= 0");
@@ -40,6 +43,25 @@ DepthSensor::DepthSensor(const DepthSensorOptions& options, const Camera& camera
   cv::Scalar mean, deviation;
   cv::meanStdDev(noise_, mean, deviation);
   noise_ = (noise_ - mean[0]) / deviation[0];
+  MakeDistortion(random.Fork(1));
+}
+
+// A random mixture of the lowest polynomials over the image, of mean zero.
+void DepthSensor::MakeDistortion(Random random) {
+  distortion_px_.create(camera_.height, camera_.width, CV_32FC1);
+  double weights[5];
+  for (double& weight : weights) weight = random.Uniform(0.3, 1) * (random.Chance(0.5) ? 1 : -1);
+  for (int row = 0; row < camera_.height; ++row) {
+    for (int column = 0; column < camera_.width; ++column) {
+      const double x = 2.0 * column / camera_.width - 1, y = 2.0 * row / camera_.height - 1;
+      const double terms[5] = {x, y, x * y, x * x - 1.0 / 3, y * y - 1.0 / 3};
+      double sum = 0;
+      for (int i = 0; i < 5; ++i) sum += weights[i] * terms[i];
+      distortion_px_.at<float>(row, column) = static_cast<float>(sum);
+    }
+  }
+  const double largest = cv::norm(distortion_px_, cv::NORM_INF);
+  distortion_px_ *= options_.distortion_px / largest;
 }
 
 // The projector stands to the side of the camera by the baseline, so a surface point of disparity d
@@ -108,6 +130,7 @@ void DepthSensor::MeasureRow(const cv::Mat& disparity, const Row& row, Random& r
   const float highest = bf / std::max(0.01f, static_cast<float>(options_.nearest_m));
   const float grazing = static_cast<float>(std::cos(options_.grazing_deg * std::numbers::pi / 180));
   const float* disparities = disparity.ptr<float>(row.y);
+  const float* distortion = distortion_px_.ptr<float>(row.y);
   for (int x = 0; x < disparity.cols; ++x) {
     depth[x] = 0;
     if (row.hidden[x]) continue;
@@ -121,7 +144,7 @@ void DepthSensor::MeasureRow(const cv::Mat& disparity, const Row& row, Random& r
     }
     if (d <= 0) continue;
     if (row.cosine[x] < grazing && random.Chance(1.2 * (1 - row.cosine[x] / grazing))) continue;
-    d += sigma_px * row.noise[(x + row.noise_shift) % kTile];
+    d += distortion[x] + sigma_px * row.noise[(x + row.noise_shift) % kTile];
     d = std::floor(d * steps + 0.5f) / steps;
     if (d < lowest || d > highest) continue;
     depth[x] = static_cast<uint16_t>(std::min(65535.f, bf / d * factor + 0.5f));

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "sensor/camera.h"
@@ -21,15 +22,26 @@ Status Scenario::Check() const {
   }
   const StatusOr<Camera> preset = Camera::Preset(camera);
   if (!preset.ok()) return preset.status();
+  if (!(std::abs(focal_error) < 0.1)) return Status::Error("focal_error must be in (-0.1, 0.1)");
   if (!(fps > 0 && duration_s * fps >= 1))
     return Status::Error("duration_s and fps must give at least one frame");
   if (!(time_jitter_s >= 0 && time_jitter_s * 8 < 1 / fps)) {
     return Status::Error(
         "time_jitter_s must be below an eighth of the frame time, or frames would change places");
   }
-  for (const Blackout& blackout : blackouts) {
-    if (!(blackout.to_s > blackout.from_s))
-      return Status::Error("blackouts: to_s must be after from_s");
+  for (const std::vector<TimeSpan>& spans : {blackouts, depth_gaps}) {
+    for (const TimeSpan& span : spans) {
+      if (!(span.to_s > span.from_s)) {
+        return Status::Error("blackouts and depth_gaps: to_s must be after from_s");
+      }
+    }
+  }
+  for (const Dimming& dimming : dimmings) {
+    if (!(dimming.to_s > dimming.from_s))
+      return Status::Error("dimmings: to_s must be after from_s");
+    if (!(dimming.level >= 0 && dimming.level <= 1)) {
+      return Status::Error("dimmings: level must be in [0, 1]");
+    }
   }
   for (size_t i = 1; i < jumps.size(); ++i) {
     if (!(jumps[i].time_s > jumps[i - 1].time_s))
@@ -39,6 +51,16 @@ Status Scenario::Check() const {
   MSF_RETURN_IF_ERROR(path.Check());
   MSF_RETURN_IF_ERROR(color.Check());
   return depth.Check();
+}
+
+double Scenario::LightAt(double elapsed_s) const {
+  constexpr double kChange_s = 0.2;
+  double light = 1;
+  for (const Dimming& dimming : dimmings) {
+    const double since_change_s = std::min(elapsed_s - dimming.from_s, dimming.to_s - elapsed_s);
+    light *= 1 - (1 - dimming.level) * std::clamp(since_change_s / kChange_s, 0., 1.);
+  }
+  return light;
 }
 
 StatusOr<Scenario> LoadScenario(const std::string& name_or_file) {

@@ -13,8 +13,8 @@
 
 namespace msf {
 
-// From `from_s` to `to_s` the pictures are black and the depth is empty.
-struct Blackout {
+// A span of time since the start.
+struct TimeSpan {
   double from_s = 0;
   double to_s = 0;
 
@@ -22,6 +22,20 @@ struct Blackout {
   void Visit(Visitor& visit) {
     visit("from_s", from_s, "start");
     visit("to_s", to_s, "end");
+  }
+};
+
+// Poor light from `from_s` to `to_s`: what is seen is darker, the camera's noise is not.
+struct Dimming {
+  double from_s = 0;
+  double to_s = 0;
+  double level = 0.2;
+
+  template <typename Visitor>
+  void Visit(Visitor& visit) {
+    visit("from_s", from_s, "start");
+    visit("to_s", to_s, "end");
+    visit("level", level, "share of the usual light, 0..1");
   }
 };
 
@@ -42,6 +56,7 @@ struct Scenario {
   std::string description;
   std::string world = "office";
   std::string camera = "simulated";
+  double focal_error = 0;
   double duration_s = 25;
   double start_time_s = 1000;
   double fps = 30;
@@ -49,7 +64,9 @@ struct Scenario {
   CameraPathOptions path;
   ColorSensorOptions color;
   DepthSensorOptions depth;
-  std::vector<Blackout> blackouts;
+  std::vector<TimeSpan> blackouts;
+  std::vector<TimeSpan> depth_gaps;
+  std::vector<Dimming> dimmings;
   std::vector<Jump> jumps;
   std::vector<ActorOptions> actors;
 
@@ -59,6 +76,9 @@ struct Scenario {
     visit("description", description, "what it is for");
     visit("world", world, "office or two_rooms");
     visit("camera", camera, "a camera preset");
+    visit("focal_error", focal_error,
+          "the true focal length exceeds the calibrated one by this share: what a calibration "
+          "misses");
     visit("duration_s", duration_s, "length of the sequence");
     visit("start_time_s", start_time_s, "time stamp of the first frame, s");
     visit("fps", fps, "frame rate, Hz");
@@ -66,12 +86,17 @@ struct Scenario {
     visit("path", path, "");
     visit("color", color, "");
     visit("depth", depth, "");
-    visit("blackouts", blackouts, "");
+    visit("blackouts", blackouts, "pictures are black and there is no depth");
+    visit("depth_gaps", depth_gaps, "no depth, as in sunlight, which blinds the sensor");
+    visit("dimmings", dimmings, "");
     visit("jumps", jumps, "");
     visit("actors", actors, "");
   }
   // A sentence when a value makes no sense.
   Status Check() const;
+
+  // Share of the usual light at a time since the start; it changes within 0.2 s.
+  double LightAt(double elapsed_s) const;
 };
 
 // The scenario of that name that is built in, else the one in the YAML file of that name. Errors

@@ -38,6 +38,7 @@ Spread SpreadOf(const cv::Mat& depth) {
 TEST(DepthSensor, NoiseGrowsWithTheSquareOfDistance) {
   DepthSensorOptions options;
   options.disparity_steps = 1e4;  // noise alone
+  options.distortion_px = 0;
   options.farthest_m = 8;
   for (const double z : {0.8, 1.6, 3.2, 4.5}) {
     const Spread spread = SpreadOf(Measure(options, FlatView(z)));
@@ -58,6 +59,25 @@ TEST(DepthSensor, DisparityComesInEighthsOfAPixel) {
     const double eighths = 40 / (value / 5000.0) * 8;
     EXPECT_NEAR(eighths, std::round(eighths), 0.02);
   }
+}
+
+TEST(DepthSensor, DistortionIsSmoothFixedAndGrowsWithTheSquareOfDistance) {
+  DepthSensorOptions options;
+  options.disparity_steps = 1e4;
+  options.noise_per_m = 0;
+  options.distortion_px = 0.2;
+  const cv::Mat near = Measure(options, FlatView(1)), far = Measure(options, FlatView(3));
+  double largest = 0;
+  for (int y = 4; y < 480; y += 59) {
+    for (int x = 4; x < 640; x += 79) {
+      const double near_error_m = near.at<uint16_t>(y, x) / 5000.0 - 1;
+      const double far_error_m = far.at<uint16_t>(y, x) / 5000.0 - 3;
+      EXPECT_NEAR(far_error_m, 9 * near_error_m, 0.004);
+      EXPECT_NEAR(far.at<uint16_t>(y, x), far.at<uint16_t>(y, x + 1), 6);
+      largest = std::max(largest, std::abs(far_error_m));
+    }
+  }
+  EXPECT_NEAR(largest, 0.2 * 9 / 40, 0.012);
 }
 
 TEST(DepthSensor, NothingBeyondTheRange) {
@@ -106,7 +126,7 @@ TEST(ColorSensor, NoiseHasTheGivenSpreadAndLightFallsOffToTheCorners) {
   ColorSensorOptions options;
   options.exposure_drift = 0;
   const cv::Mat grey(camera.height, camera.width, CV_32FC4, cv::Scalar::all(128));
-  const cv::Mat picture = ColorSensor(options, camera, Random(1)).Expose(grey, 0, Random(2));
+  const cv::Mat picture = ColorSensor(options, camera, Random(1)).Expose(grey, 0, 1, Random(2));
   cv::Scalar mean, deviation;
   cv::meanStdDev(picture(cv::Rect(300, 220, 40, 40)), mean, deviation);
   EXPECT_NEAR(mean[1], 128, 0.5);

@@ -16,6 +16,19 @@ namespace {
 // Keys of the random streams that belong to a seed.
 enum Stream : uint64_t { kWorld = 1, kPath, kColor, kDepth, kTimes, kFrames, kCast };
 
+// The camera that takes the pictures; the one that comes with them is calibrated with an error.
+Camera TrueCamera(Camera camera, double focal_error) {
+  camera.fx *= 1 + focal_error;
+  camera.fy *= 1 + focal_error;
+  return camera;
+}
+
+bool IsWithin(const std::vector<TimeSpan>& spans, double time_s) {
+  return std::any_of(spans.begin(), spans.end(), [time_s](const TimeSpan& span) {
+    return time_s >= span.from_s && time_s < span.to_s;
+  });
+}
+
 }  // namespace
 
 struct Simulator::Parts {
@@ -27,7 +40,7 @@ struct Simulator::Parts {
         cast(scenario.actors, builder, random.Fork(kCast)),
         scene(std::move(builder).Finish()),
         path(scenario.path, random.Fork(kPath)),
-        lens(*camera),
+        lens(TrueCamera(*camera, scenario.focal_error)),
         renderer(scene, lens.ideal()),
         color_sensor(scenario.color, *camera, random.Fork(kColor)),
         depth_sensor(scenario.depth, *camera, random.Fork(kDepth)) {}
@@ -44,17 +57,9 @@ struct Simulator::Parts {
   DepthSensor depth_sensor;
   RenderedView ideal_view, sub_view, view;
 
-  bool IsBlack(double elapsed_s) const;
   void RenderView(double time_s);
   Rigid3d PoseAt(double time_s) const;
 };
-
-bool Simulator::Parts::IsBlack(double elapsed_s) const {
-  for (const Blackout& blackout : scenario.blackouts) {
-    if (elapsed_s >= blackout.from_s && elapsed_s < blackout.to_s) return true;
-  }
-  return false;
-}
 
 Rigid3d Simulator::Parts::PoseAt(double time_s) const {
   const double elapsed_s = time_s - scenario.start_time_s;
@@ -126,7 +131,8 @@ SimulatedFrame Simulator::Render(int index) {
   frame.camera = parts_->camera;
   SimulatedFrame result;
   result.T_wc = PoseAt(frame.time_s);
-  if (parts_->IsBlack(frame.time_s - parts_->scenario.start_time_s)) {
+  const double elapsed_s = frame.time_s - parts_->scenario.start_time_s;
+  if (IsWithin(parts_->scenario.blackouts, elapsed_s)) {
     frame.color = cv::Mat::zeros(camera().height, camera().width, CV_8UC3);
     frame.depth = cv::Mat::zeros(camera().height, camera().width, CV_16UC1);
     result.mask = cv::Mat::zeros(camera().height, camera().width, CV_8UC1);
@@ -134,9 +140,10 @@ SimulatedFrame Simulator::Render(int index) {
     parts_->RenderView(frame.time_s);
     const RenderedView& view = parts_->view;
     const Random noise = parts_->random.Fork(kFrames).Fork(static_cast<uint64_t>(index));
-    frame.color = parts_->color_sensor.Expose(
-        view.color, frame.time_s - parts_->scenario.start_time_s, noise.Fork(1));
+    frame.color = parts_->color_sensor.Expose(view.color, elapsed_s,
+                                              parts_->scenario.LightAt(elapsed_s), noise.Fork(1));
     frame.depth = parts_->depth_sensor.Measure(view, noise.Fork(2));
+    if (IsWithin(parts_->scenario.depth_gaps, elapsed_s)) frame.depth.setTo(0);
     result.mask = view.label.clone();
   }
   result.frame = std::make_shared<const RgbdFrame>(std::move(frame));

@@ -180,6 +180,48 @@ TEST(Simulator, DarknessAndJumps) {
   EXPECT_LT(nearest_m, 0.2);
 }
 
+TEST(Simulator, PoorLightAndBlindedDepth) {
+  Scenario scenario = *LoadScenario("static");
+  scenario.duration_s = 3;
+  scenario.dimmings = {{1, 2, 0.2}};
+  scenario.depth_gaps = {{2, 2.5}};
+  EXPECT_EQ(scenario.LightAt(0.9), 1);
+  EXPECT_NEAR(scenario.LightAt(1.1), 0.6, 1e-9);
+  EXPECT_NEAR(scenario.LightAt(1.5), 0.2, 1e-9);
+  Simulator simulator = *Simulator::Create(scenario, 1);
+  const SimulatedFrame usual = simulator.Render(15), dim = simulator.Render(45),
+                       blind = simulator.Render(68);
+  EXPECT_NEAR(cv::mean(dim.frame->color)[1] / cv::mean(usual.frame->color)[1], 0.2, 0.04);
+  EXPECT_GT(cv::countNonZero(dim.frame->depth), 100000);
+  EXPECT_EQ(cv::countNonZero(blind.frame->depth), 0);
+  EXPECT_GT(cv::mean(blind.frame->color)[1], 50);
+  scenario.depth_gaps = {{2, 1}};
+  EXPECT_FALSE(scenario.Check().ok());
+}
+
+// With a calibration that is off, what is seen lies farther from the middle than the calibration
+// says.
+TEST(Simulator, FocalErrorShowsInThePicturesOnly) {
+  Scenario scenario = Perfect("static");
+  scenario.focal_error = 0.02;
+  Simulator simulator = *Simulator::Create(scenario, 1);
+  EXPECT_EQ(simulator.camera().fx, 525);
+  scenario.focal_error = 0;
+  Simulator exact = *Simulator::Create(scenario, 1);
+  const cv::Mat zoomed = simulator.Render(0).frame->depth, plain = exact.Render(0).frame->depth;
+  int agree = 0, agree_unzoomed = 0;
+  for (int y = 20; y < 460; y += 11) {
+    for (int x = 20; x < 620; x += 11) {
+      const int u = int(std::lround(319.5 + (x - 319.5) / 1.02)),
+                v = int(std::lround(239.5 + (y - 239.5) / 1.02));
+      agree += std::abs(zoomed.at<uint16_t>(y, x) - plain.at<uint16_t>(v, u)) < 60;
+      agree_unzoomed += std::abs(zoomed.at<uint16_t>(y, x) - plain.at<uint16_t>(y, x)) < 60;
+    }
+  }
+  EXPECT_GT(agree, 0.95 * 40 * 55);
+  EXPECT_LT(agree_unzoomed, agree);
+}
+
 TEST(Simulator, GroundTruthCoversAllFramesFinely) {
   Simulator simulator = *Simulator::Create(*LoadScenario("rpy"), 1);
   const Trajectory truth = simulator.GroundTruth();
