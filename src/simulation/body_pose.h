@@ -41,7 +41,7 @@ struct Manner {
   explicit Manner(Random random);
   double step_m;
   double arm_swing;
-  std::array<double, 6> phases;
+  std::array<double, 6> phases{};
 };
 
 // A walker's pose; feet on the ground do not slide while the walk is at full speed.

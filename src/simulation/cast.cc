@@ -162,6 +162,7 @@ std::vector<VisibleActor> FindVisibleActors(const cv::Mat& mask) {
     }
   }
   std::vector<VisibleActor> actors;
+  actors.reserve(found.size());
   for (const auto& [label, actor] : found) actors.push_back(actor);
   return actors;
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "simulation/body_pose.h"
 #include "simulation/camera_path.h"
@@ -14,6 +15,13 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
+// from, from + step, ... below `to`.
+std::vector<double> Times(double from, double to, double step) {
+  std::vector<double> times(static_cast<size_t>((to - from) / step + 1e-9));
+  for (size_t i = 0; i < times.size(); ++i) times[i] = from + step * static_cast<double>(i);
+  return times;
+}
+
 struct Motion {
   double length_m = 0, fastest_m_s = 0, fastest_deg_s = 0, mean_deg_s = 0, roughest_m_s2 = 0;
 };
@@ -22,8 +30,8 @@ struct Motion {
 Motion Observe(const CameraPath& path, double from_s, double to_s) {
   Motion motion;
   const double dt = 0.01;
-  int count = 0;
-  for (double t = from_s; t < to_s; t += dt, ++count) {
+  const std::vector<double> times = Times(from_s, to_s, dt);
+  for (const double t : times) {
     const Rigid3d a = path.PoseAt(t), b = path.PoseAt(t + dt), c = path.PoseAt(t + 2 * dt);
     const double step_m = (b.translation() - a.translation()).norm();
     const double turn_deg = (a.Inverse() * b).Angle() / kDegree;
@@ -34,7 +42,7 @@ Motion Observe(const CameraPath& path, double from_s, double to_s) {
     const Eigen::Vector3d bend = c.translation() - 2 * b.translation() + a.translation();
     motion.roughest_m_s2 = std::max(motion.roughest_m_s2, bend.norm() / (dt * dt));
   }
-  motion.mean_deg_s /= count;
+  motion.mean_deg_s /= static_cast<double>(times.size());
   return motion;
 }
 
@@ -71,12 +79,12 @@ TEST(CameraPath, LoopIsLongClosesAndIsWalkedCalmly) {
   EXPECT_LT(motion.mean_deg_s, 25);
   // After a round it sees what the start saw.
   double seen_again_s = 0, length_m = 0, length_at_return_m = 0;
-  for (double t = 1; t < scenario.duration_s; t += 0.05) {
+  for (const double t : Times(1, scenario.duration_s, 0.05)) {
     const Rigid3d now = path.PoseAt(t);
     length_m += (path.PoseAt(t + 0.05).translation() - now.translation()).norm();
     if (t < 10) continue;
     double nearest_m = 9;
-    for (double early = 0; early < 6; early += 0.1) {
+    for (const double early : Times(0, 6, 0.1)) {
       const Rigid3d between = path.PoseAt(early).Inverse() * now;
       if (between.Angle() < 12 * kDegree)
         nearest_m = std::min(nearest_m, between.translation().norm());
@@ -116,7 +124,7 @@ TEST(BodyPose, FeetOnTheGroundDoNotSlide) {
   const double dt = 0.01;
   for (int side = 0; side < 2; ++side) {
     int on_ground = 0, in_air = 0;
-    for (double t = 2; t < 7; t += dt) {
+    for (const double t : Times(2, 7, dt)) {
       const Eigen::Vector3d now = WalkingPose(path, t, manner, false).ankles_w[side];
       const Eigen::Vector3d next = WalkingPose(path, t + dt, manner, false).ankles_w[side];
       const double speed_m_s = (next - now).head<2>().norm() / dt;
@@ -137,7 +145,7 @@ TEST(BodyPose, FeetOnTheGroundDoNotSlide) {
 TEST(BodyPose, LegsReachTheGroundAndOneFootAlwaysStands) {
   const WalkPath path({{0, 0}, {4, 0, 1.5}, {4, 3}, {0, 3}}, true, 1.0, 0);
   const Manner manner(Random(4));
-  for (double t = 0; t < 20; t += 0.05) {
+  for (const double t : Times(0, 20, 0.05)) {
     const BodyPose pose = WalkingPose(path, t, manner, false);
     double lowest = 9;
     for (const Eigen::Vector3d& ankle : pose.ankles_w) {
@@ -153,7 +161,7 @@ TEST(BodyPose, SomeoneSeatedStaysOnTheChair) {
   const Manner manner(Random(4));
   double moved = 0;
   const BodyPose first = SittingPose({1, 2}, {1, 0}, 0, manner);
-  for (double t = 0; t < 20; t += 0.1) {
+  for (const double t : Times(0, 20, 0.1)) {
     const BodyPose pose = SittingPose({1, 2}, {1, 0}, t, manner);
     EXPECT_EQ(pose.place, Eigen::Vector2d(1, 2));
     EXPECT_EQ(pose.ankles_w[0], first.ankles_w[0]);

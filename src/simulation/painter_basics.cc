@@ -47,7 +47,9 @@ void DrawText(cv::Mat& picture, const cv::Rect& area, double letter, const cv::S
   static constexpr char kLetters[] = "eeettaaooiinnsshhrrddllucmfwypvbgkjqxzEKMRSTW0123456789";
   const double scale = letter / 21;  // Hershey's simplex capitals are 21 units high
   const int thickness = std::max(1, static_cast<int>(letter / 7));
-  for (double y = area.y + 1.3 * letter; y < area.br().y; y += 1.8 * letter) {
+  const int num_lines = static_cast<int>((area.height - 1.3 * letter) / (1.8 * letter) + 1);
+  for (int line = 0; line < num_lines; ++line) {
+    const double y = area.y + (1.3 + 1.8 * line) * letter;
     double x = area.x;
     const double end = area.br().x - (random.Chance(0.2) ? random.Uniform(0, 0.6) * area.width : 0);
     while (true) {

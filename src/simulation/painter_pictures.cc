@@ -188,7 +188,8 @@ cv::Mat PaintKeyboard(cv::Size size, Random random) {
   cv::Mat picture(size, CV_8UC3, cv::Scalar(45, 45, 48));
   const double pitch = size.height / 5.6;
   for (int row = 0; row < 5; ++row) {
-    for (double x = pitch * 0.3; x < size.width - pitch;) {
+    double x = pitch * 0.3;
+    while (x < size.width - pitch) {
       const double width = pitch * (random.Chance(0.12) ? 1.9 : 1);
       const cv::Rect key(static_cast<int>(x), static_cast<int>(pitch * (0.3 + row)),
                          static_cast<int>(width * 0.82), static_cast<int>(pitch * 0.82));

@@ -24,9 +24,10 @@ class Random {
   // In [0, 1), and in [low, high).
   double Uniform() { return static_cast<double>(Next() >> 11) * 0x1p-53; }
   double Uniform(double low, double high) { return low + (high - low) * Uniform(); }
-  // In [low, high], both included.
+  // In [low, high], both included, low <= high.
   int Int(int low, int high) {
-    return low + static_cast<int>(Next() % static_cast<uint64_t>(high - low + 1));
+    const uint64_t count = static_cast<uint64_t>(high) - static_cast<uint64_t>(low) + 1;
+    return low + static_cast<int>(count > 0 ? Next() % count : 0);
   }
   bool Chance(double probability) { return Uniform() < probability; }
   // Standard normal (Box-Muller).

@@ -24,7 +24,7 @@ struct Scene {
 // RenderedView::label.
 struct PlacedMesh {
   Mesh mesh;
-  int label;
+  int label = 0;
 };
 
 // All images have the size of the camera; depth is exact at pixel centres.

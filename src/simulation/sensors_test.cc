@@ -139,7 +139,8 @@ TEST(ColorSensor, ExposureDriftsSlowlyAndJumpsOnlyWhenAsked) {
   ColorSensorOptions options;
   const ColorSensor drifting(options, TestCamera(), Random(1));
   double low = 9, high = 0;
-  for (double t = 0; t < 30; t += 1.0 / 30) {
+  for (int i = 0; i < 900; ++i) {
+    const double t = i / 30.0;
     low = std::min(low, drifting.ExposureAt(t));
     high = std::max(high, drifting.ExposureAt(t));
     EXPECT_NEAR(drifting.ExposureAt(t + 1.0 / 30), drifting.ExposureAt(t), 0.006);
@@ -149,7 +150,8 @@ TEST(ColorSensor, ExposureDriftsSlowlyAndJumpsOnlyWhenAsked) {
   options.exposure_jump = 0.3;
   const ColorSensor jumping(options, TestCamera(), Random(1));
   double largest = 0;
-  for (double t = 0; t < 30; t += 1.0 / 30) {
+  for (int i = 0; i < 900; ++i) {
+    const double t = i / 30.0;
     largest = std::max(largest, std::abs(jumping.ExposureAt(t + 1.0 / 30) - jumping.ExposureAt(t)));
   }
   EXPECT_GT(largest, 0.1);

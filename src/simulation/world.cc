@@ -66,7 +66,9 @@ void AddWalls(SceneBuilder& builder, const Room& room, WallPainter paint, const 
 void HangPictures(SceneBuilder& builder, const Wall& wall, float begin, float end, float pitch,
                   float up) {
   Random random = builder.NextRandom();
-  for (float along = begin + pitch / 2; along + pitch / 2 <= end + 1e-3f; along += pitch) {
+  const int count = static_cast<int>((end - begin) / pitch + 1e-3f);
+  for (int i = 0; i < count; ++i) {
+    const float along = begin + (static_cast<float>(i) + 0.5f) * pitch;
     const bool tall = random.Chance(0.5);
     const float width = static_cast<float>(random.Uniform(0.6, 0.8)) * pitch * (tall ? 0.75f : 1);
     const float height = width * (tall ? 1.4f : 0.72f);
