@@ -6,18 +6,6 @@
 namespace msf {
 namespace {
 
-std::vector<MapPointId> PointsSeenBy(const Map& map, std::span<const KeyFrameId> keyframes) {
-  std::vector<MapPointId> points;
-  for (const KeyFrameId id : keyframes) {
-    for (const MapPointId point : map.FindKeyFrame(id)->points) {
-      if (point.valid()) points.push_back(point);
-    }
-  }
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  return points;
-}
-
 // The observations of a point by the keyframes that have a pose in the problem.
 std::vector<BundleObservation> ObservationsOf(const MapPoint& point, const Map& map,
                                               const NoiseOptions& noise,
@@ -62,7 +50,7 @@ MapBundle CopyBundle(const Map& map, const NoiseOptions& noise, std::span<const 
   };
   add_poses(free, false);
   add_poses(fixed, true);
-  for (const MapPointId id : PointsSeenBy(map, free)) {
+  for (const MapPointId id : map.PointsSeenBy(free)) {
     const MapPoint& point = *map.FindPoint(id);
     const std::vector<BundleObservation> observations =
         ObservationsOf(point, map, noise, pose_of, static_cast<int>(bundle.points.size()));

@@ -18,18 +18,12 @@ std::optional<PlaceWindow> CopyWindow(const Map& map, KeyFrameId centre, int num
   window.map_id = keyframe->map_id;
   std::vector<KeyFrameId> ids = map.covisibility().Best(centre, num_neighbours);
   ids.insert(ids.begin(), centre);
-  std::vector<MapPointId> point_ids;
+  std::erase_if(ids, [&](KeyFrameId id) { return !map.FindKeyFrame(id)->words; });
   for (const KeyFrameId id : ids) {
     const KeyFrame& member = *map.FindKeyFrame(id);
-    if (!member.words) continue;
     window.keyframes.push_back({id, member.T_cw, member.features, member.words, member.points});
-    for (const MapPointId point : member.points) {
-      if (point.valid()) point_ids.push_back(point);
-    }
   }
-  std::sort(point_ids.begin(), point_ids.end());
-  point_ids.erase(std::unique(point_ids.begin(), point_ids.end()), point_ids.end());
-  for (const MapPointId id : point_ids) window.points.emplace_back(*map.FindPoint(id));
+  for (const MapPointId id : map.PointsSeenBy(ids)) window.points.emplace_back(*map.FindPoint(id));
   return window;
 }
 

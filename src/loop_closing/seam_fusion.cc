@@ -13,20 +13,6 @@ std::vector<KeyFrameId> WithNeighbours(const Map& map, KeyFrameId centre, int ma
   return keyframes;
 }
 
-std::vector<MapPointId> PointsSeenBy(const Map& map, const std::vector<KeyFrameId>& keyframes) {
-  std::vector<MapPointId> points;
-  for (const KeyFrameId id : keyframes) {
-    const KeyFrame* keyframe = map.FindKeyFrame(id);
-    if (!keyframe) continue;
-    for (const MapPointId point : keyframe->points) {
-      if (point.valid()) points.push_back(point);
-    }
-  }
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  return points;
-}
-
 int FuseVerified(const PlaceMatch& match, SharedMap& shared_map) {
   const SharedMap::Writer map = shared_map.Write();
   return map->FindKeyFrame(match.current) ? FuseMatches(match.matches, match.current, *map) : 0;
@@ -52,7 +38,7 @@ int FuseSeam(const LoopClosingOptions& options, const Recognition& place, const 
              SharedMap& shared_map) {
   int fused = FuseVerified(place.match, shared_map);
   for (const PlaceMatch& match : place.supporting) fused += FuseVerified(match, shared_map);
-  const std::vector<MapPointId> established = PointsSeenBy(*shared_map.Read(), seam.matched);
+  const std::vector<MapPointId> established = shared_map.Read()->PointsSeenBy(seam.matched);
   for (const KeyFrameId id : seam.current) {
     const SharedMap::Writer map = shared_map.Write();
     if (map->FindKeyFrame(id))
@@ -62,7 +48,7 @@ int FuseSeam(const LoopClosingOptions& options, const Recognition& place, const 
   for (const KeyFrameId id : seam.current) {
     if (map->FindKeyFrame(id)) map->UpdateConnections(id);
   }
-  for (const MapPointId id : PointsSeenBy(*map, seam.current)) {
+  for (const MapPointId id : map->PointsSeenBy(seam.current)) {
     map->UpdateAppearance(id);
     map->UpdateNormalAndRange(id);
   }

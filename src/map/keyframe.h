@@ -19,8 +19,8 @@ struct KeyFrame {
   double time_s = 0;
   // What the camera saw: never changes once the keyframe is made.
   std::shared_ptr<const FrameFeatures> features;
-  std::shared_ptr<const BagOfWords> words;             // null until mapping has described it
-  std::vector<std::array<uint8_t, 3>> colors_bgr;      // per feature
+  std::shared_ptr<const BagOfWords> words;         // null until mapping has described it
+  std::vector<std::array<uint8_t, 3>> colors_bgr;  // per feature
 
   Rigid3d T_cw;
   std::vector<MapPointId> points;  // per feature, invalid = none

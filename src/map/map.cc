@@ -27,7 +27,8 @@ std::vector<Id> IdsOf(const std::vector<std::unique_ptr<T>>& items, MapId map) {
 
 template <typename T>
 int CountOf(const std::vector<std::unique_ptr<T>>& items, MapId map) {
-  return static_cast<int>(std::count_if(items.begin(), items.end(), [&](const auto& item) { return item && item->map_id == map; }));
+  return static_cast<int>(std::count_if(
+      items.begin(), items.end(), [&](const auto& item) { return item && item->map_id == map; }));
 }
 
 }  // namespace
@@ -106,7 +107,9 @@ KeyFrame& Map::MutableKeyFrame(KeyFrameId id) {
   return *keyframe;
 }
 
-std::vector<KeyFrameId> Map::KeyFrameIds(MapId map) const { return IdsOf<KeyFrameId>(keyframes_, map); }
+std::vector<KeyFrameId> Map::KeyFrameIds(MapId map) const {
+  return IdsOf<KeyFrameId>(keyframes_, map);
+}
 
 std::vector<KeyFrameId> Map::KeyFrameIds() const {
   std::vector<KeyFrameId> ids;
@@ -158,7 +161,9 @@ void Map::CullKeyFrame(KeyFrameId id) {
   culled_[id.value()] = std::move(culled);
 }
 
-void Map::SetWords(KeyFrameId id, std::shared_ptr<const BagOfWords> words) { MutableKeyFrame(id).words = std::move(words); }
+void Map::SetWords(KeyFrameId id, std::shared_ptr<const BagOfWords> words) {
+  MutableKeyFrame(id).words = std::move(words);
+}
 
 bool Map::Knows(KeyFrameId id) const { return Carrier(id) != nullptr; }
 

@@ -1,8 +1,9 @@
-// The world so far: all keyframes and points of all maps of the atlas, and how they hang together. Not thread-safe by itself;
-// threads share it through SharedMap.
+// The world so far: all keyframes and points of all maps of the atlas, and how they hang together.
+// Not thread-safe by itself; threads share it through SharedMap.
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "feature/scale_levels.h"
@@ -14,17 +15,19 @@
 
 namespace msf {
 
-// Ids count up from 0 and are never used again, so that whoever kept one can always learn what became of it.
+// Ids count up from 0 and are never used again, so that whoever kept one can always learn what
+// became of it.
 class Map {
  public:
-  Map(std::shared_ptr<const Camera> camera, ScaleLevels levels) : camera_(std::move(camera)), levels_(std::move(levels)) {}
+  Map(std::shared_ptr<const Camera> camera, ScaleLevels levels)
+      : camera_(std::move(camera)), levels_(std::move(levels)) {}
 
   const Camera& camera() const { return *camera_; }
   const ScaleLevels& levels() const { return levels_; }
   // Grows with every change: who caches something compares it.
   uint64_t version() const { return version_; }
-  // Grows when the map is corrected as a whole (loop, merge, full bundle adjustment): what a solver computed from an older copy
-  // must not be applied any more.
+  // Grows when the map is corrected as a whole (loop, merge, full bundle adjustment): what a solver
+  // computed from an older copy must not be applied any more.
   uint64_t epoch() const { return epoch_; }
   void StartNewEpoch() { ++epoch_; }
 
@@ -34,7 +37,8 @@ class Map {
   void SetActiveMap(MapId id) { active_map_ = id; }
   // Forgets a map with all its keyframes and points.
   void DropMap(MapId id);
-  // Moves the keyframes and points of `from` by T_to_from (from-world to to-world) and makes them part of `to`.
+  // Moves the keyframes and points of `from` by T_to_from (from-world to to-world) and makes them
+  // part of `to`.
   void MoveMap(MapId from, MapId to, const Rigid3d& T_to_from);
   std::vector<MapId> MapIds() const;
 
@@ -46,7 +50,8 @@ class Map {
   std::vector<KeyFrameId> KeyFrameIds() const;
   int NumKeyFrames(MapId map) const;
   void SetPose(KeyFrameId id, const Rigid3d& T_cw);
-  // T_cw of a keyframe, also of one that was culled (it moves with the one it was attached to). Only for ids of this map.
+  // T_cw of a keyframe, also of one that was culled (it moves with the one it was attached to).
+  // Only for ids of this map.
   Rigid3d PoseOf(KeyFrameId id) const;
   // Removes a keyframe from the graph; its pose stays known relative to its parent.
   void CullKeyFrame(KeyFrameId id);
@@ -56,35 +61,42 @@ class Map {
   MapId MapOf(KeyFrameId id) const;
 
   // --- Points.
-  // A new point that `feature` of `first_keyframe` shows; colour, descriptor and static weight come from there.
+  // A new point that `feature` of `first_keyframe` shows; colour, descriptor and static weight come
+  // from there.
   MapPointId AddPoint(const Eigen::Vector3d& p_w, KeyFrameId first_keyframe, int feature);
   const MapPoint* FindPoint(MapPointId id) const;
   std::vector<MapPointId> PointIds(MapId map) const;
   int NumPoints(MapId map) const;
+  // The points that any of these keyframes shows, ascending, each once; keyframes that are gone are
+  // passed over.
+  std::vector<MapPointId> PointsSeenBy(std::span<const KeyFrameId> keyframes) const;
   void SetPosition(MapPointId id, const Eigen::Vector3d& p_w);
   // Moves a point together with those who see it: p_new = motion * p_old.
   void MovePoint(MapPointId id, const Rigid3d& motion);
   void SetStaticWeight(MapPointId id, float weight);
-  // Connects a point and a feature; either may be taken already, then nothing happens and it returns false.
+  // Connects a point and a feature; either may be taken already, then nothing happens and it
+  // returns false.
   bool AddObservation(MapPointId id, KeyFrameId keyframe, int feature);
   // Disconnects them; a point with fewer than 2 observations left disappears.
   void RemoveObservation(MapPointId id, KeyFrameId keyframe);
   void RemovePoint(MapPointId id);
-  // Gives the observations of `old_id` to `new_id`; whoever holds `old_id` finds the other by Resolve().
+  // Gives the observations of `old_id` to `new_id`; whoever holds `old_id` finds the other by
+  // Resolve().
   void ReplacePoint(MapPointId old_id, MapPointId new_id);
   // The id under which the point lives today; invalid when it is gone.
   MapPointId Resolve(MapPointId id) const;
   void CountVisible(MapPointId id, int times = 1);
   void CountFound(MapPointId id, int times = 1);
-  // Recomputes the representative descriptor, the viewing direction and the distance range from the observations.
+  // Recomputes the representative descriptor, the viewing direction and the distance range from the
+  // observations.
   void UpdateAppearance(MapPointId id);
   void UpdateNormalAndRange(MapPointId id);
 
   // --- Graphs.
   const CovisibilityGraph& covisibility() const { return covisibility_; }
   const SpanningTree& tree() const { return tree_; }
-  // Recounts the shared points of a keyframe; the first time it also gets its place in the spanning tree: below the keyframe
-  // it shares most points with, or, sharing none, below the one before it.
+  // Recounts the shared points of a keyframe; the first time it also gets its place in the spanning
+  // tree: below the keyframe it shares most points with, or, sharing none, below the one before it.
   void UpdateConnections(KeyFrameId id);
   void AddLoopEdge(KeyFrameId a, KeyFrameId b) { tree_.AddLoopEdge(a, b); }
   void SetParent(KeyFrameId id, KeyFrameId parent) { tree_.SetParent(id, parent); }

@@ -8,7 +8,9 @@
 namespace msf {
 namespace {
 
-int Strength(const KeyFrame& keyframe, int feature) { return keyframe.features->HasDepth(feature) ? 2 : 1; }
+int Strength(const KeyFrame& keyframe, int feature) {
+  return keyframe.features->HasDepth(feature) ? 2 : 1;
+}
 
 }  // namespace
 
@@ -50,8 +52,22 @@ std::vector<MapPointId> Map::PointIds(MapId map) const {
 }
 
 int Map::NumPoints(MapId map) const {
-  return static_cast<int>(
-      std::count_if(points_.begin(), points_.end(), [&](const auto& point) { return point && point->map_id == map; }));
+  return static_cast<int>(std::count_if(points_.begin(), points_.end(), [&](const auto& point) {
+    return point && point->map_id == map;
+  }));
+}
+
+std::vector<MapPointId> Map::PointsSeenBy(std::span<const KeyFrameId> keyframes) const {
+  std::vector<MapPointId> seen;
+  for (const KeyFrameId id : keyframes) {
+    const KeyFrame* keyframe = FindKeyFrame(id);
+    if (!keyframe) continue;
+    std::copy_if(keyframe->points.begin(), keyframe->points.end(), std::back_inserter(seen),
+                 [](MapPointId point) { return point.valid(); });
+  }
+  std::sort(seen.begin(), seen.end());
+  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  return seen;
 }
 
 void Map::SetPosition(MapPointId id, const Eigen::Vector3d& p_w) {
@@ -65,9 +81,11 @@ bool Map::AddObservation(MapPointId id, KeyFrameId keyframe_id, int feature) {
   MapPoint& point = MutablePoint(id);
   KeyFrame& keyframe = MutableKeyFrame(keyframe_id);
   if (keyframe.points[feature].valid()) return false;
-  const auto place = std::lower_bound(
-      point.observations.begin(), point.observations.end(), keyframe_id,
-      [](const Observation& observation, KeyFrameId other) { return observation.keyframe < other; });
+  const auto place =
+      std::lower_bound(point.observations.begin(), point.observations.end(), keyframe_id,
+                       [](const Observation& observation, KeyFrameId other) {
+                         return observation.keyframe < other;
+                       });
   if (place != point.observations.end() && place->keyframe == keyframe_id) return false;
   ++version_;
   keyframe.points[feature] = id;
@@ -78,8 +96,9 @@ bool Map::AddObservation(MapPointId id, KeyFrameId keyframe_id, int feature) {
 
 void Map::RemoveObservation(MapPointId id, KeyFrameId keyframe_id) {
   MapPoint& point = MutablePoint(id);
-  const auto place = std::find_if(point.observations.begin(), point.observations.end(),
-                                  [&](const Observation& observation) { return observation.keyframe == keyframe_id; });
+  const auto place = std::find_if(
+      point.observations.begin(), point.observations.end(),
+      [&](const Observation& observation) { return observation.keyframe == keyframe_id; });
   if (place == point.observations.end()) return;
   ++version_;
   KeyFrame& keyframe = MutableKeyFrame(keyframe_id);
@@ -127,7 +146,8 @@ void Map::UpdateAppearance(MapPointId id) {
   MapPoint& point = MutablePoint(id);
   std::vector<Descriptor> descriptors;
   for (const Observation& observation : point.observations) {
-    descriptors.push_back(FindKeyFrame(observation.keyframe)->features->descriptors[observation.feature]);
+    descriptors.push_back(
+        FindKeyFrame(observation.keyframe)->features->descriptors[observation.feature]);
   }
   // The descriptor with the least median distance to the others stands for the point.
   int least_median = INT_MAX;

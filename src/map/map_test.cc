@@ -159,6 +159,15 @@ TEST_F(MapTest, AReplacedPointHandsOnWhatItHad) {
   ExpectConsistent();
 }
 
+TEST_F(MapTest, PointsSeenByKeyFramesAreListedOnce) {
+  const KeyFrameId a = Add(0);
+  const std::vector<MapPointId> points = AddPoints(a, 5);
+  const KeyFrameId b = Add(0.1, {points[3], points[1]});
+  EXPECT_EQ(map_.PointsSeenBy(std::vector{b, a, b}), points);
+  EXPECT_EQ(map_.PointsSeenBy(std::vector{b, KeyFrameId(99)}),
+            (std::vector<MapPointId>{points[1], points[3]}));
+}
+
 TEST_F(MapTest, TheAppearanceIsTheMostTypicalDescriptor) {
   const KeyFrameId a = Add(0);
   const MapPointId point = map_.AddPoint({0, 0, 2}, a, 0);

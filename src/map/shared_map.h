@@ -1,5 +1,5 @@
-// The map shared between threads: many may read at a time, one may change it. Hold a guard briefly; solvers copy what they need,
-// solve without a guard, and apply the outcome.
+// The map shared between threads: many may read at a time, one may change it. Hold a guard briefly;
+// solvers copy what they need, solve without a guard, and apply the outcome.
 #pragma once
 
 #include <mutex>

@@ -29,9 +29,11 @@ void SpanningTree::MakeRoot(KeyFrameId id) {
   }
 }
 
-void SpanningTree::Remove(KeyFrameId id, const std::function<int(KeyFrameId, KeyFrameId)>& affinity) {
+void SpanningTree::Remove(KeyFrameId id,
+                          const std::function<int(KeyFrameId, KeyFrameId)>& affinity) {
   const Node removed = nodes_.at(id);
-  // Children join one at a time: each that has joined may carry the next, so that nobody becomes its own ancestor.
+  // Children join one at a time: each that has joined may carry the next, so that nobody becomes
+  // its own ancestor.
   std::set<KeyFrameId> orphans = removed.children;
   std::vector<KeyFrameId> joined;
   if (removed.parent.valid()) joined.push_back(removed.parent);

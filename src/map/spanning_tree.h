@@ -1,4 +1,5 @@
-// The skeleton of the map: every keyframe hangs on the one it shares most with when it joins; loops add extra edges.
+// The skeleton of the map: every keyframe hangs on the one it shares most with when it joins; loops
+// add extra edges.
 #pragma once
 
 #include <functional>
@@ -16,7 +17,8 @@ class SpanningTree {
   void SetParent(KeyFrameId id, KeyFrameId parent);
   // Makes `id` the root of its tree by turning the edges on the way up around.
   void MakeRoot(KeyFrameId id);
-  // Removes a keyframe; its children go to the neighbour with the highest `affinity` that keeps the tree a tree.
+  // Removes a keyframe; its children go to the neighbour with the highest `affinity` that keeps the
+  // tree a tree.
   void Remove(KeyFrameId id, const std::function<int(KeyFrameId, KeyFrameId)>& affinity);
 
   bool Contains(KeyFrameId id) const { return nodes_.contains(id); }
