@@ -1,10 +1,9 @@
 // What every subcommand of msf-slam has in common.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <stdexcept>
 #include <string>
-
-#include <CLI/CLI.hpp>
 
 #include "util/status.h"
 

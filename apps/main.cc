@@ -5,7 +5,8 @@
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "MSF-SLAM: real-time RGB-D SLAM that keeps its accuracy while people walk through the picture",
+      "MSF-SLAM: real-time RGB-D SLAM that keeps its accuracy while people walk through the "
+      "picture",
       "msf-slam");
   app.require_subcommand(1);
   msf::AddRunCommand(app);

@@ -1,11 +1,10 @@
 // What `msf-slam run` was asked to do.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
-
-#include <CLI/CLI.hpp>
 
 #include "system/system_options.h"
 

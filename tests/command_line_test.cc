@@ -39,8 +39,8 @@ Outcome RunProgram(const std::string& arguments) {
 // A user's mistake: one sentence, no crash.
 void ExpectSentence(const Outcome& outcome, const std::string& what) {
   EXPECT_EQ(outcome.exit_code, 1) << outcome.output;
-  EXPECT_THAT(outcome.output, AllOf(HasSubstr("msf-slam: "), HasSubstr(what),
-                                    Not(HasSubstr("internal error"))));
+  EXPECT_THAT(outcome.output,
+              AllOf(HasSubstr("msf-slam: "), HasSubstr(what), Not(HasSubstr("internal error"))));
 }
 
 Trajectory Spiral() {

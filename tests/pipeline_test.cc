@@ -19,7 +19,8 @@ Simulator MakeSimulator(const std::string& scenario_name) {
   return *std::move(simulator);
 }
 
-SimulatedRun RunScenario(const std::string& scenario_name, int frames, const SystemOptions& options) {
+SimulatedRun RunScenario(const std::string& scenario_name, int frames,
+                         const SystemOptions& options) {
   Simulator simulator = MakeSimulator(scenario_name);
   SimulatedRun result;
   result.truth = simulator.GroundTruth();
@@ -47,7 +48,9 @@ TEST(Pipeline, DeterministicRunsAreEqualToTheBit) {
   ASSERT_EQ(a.run.estimate.size(), b.run.estimate.size());
   for (size_t i = 0; i < a.run.estimate.size(); ++i) {
     EXPECT_EQ(a.run.estimate[i].T_wc.translation(), b.run.estimate[i].T_wc.translation()) << i;
-    EXPECT_EQ(a.run.estimate[i].T_wc.rotation().coeffs(), b.run.estimate[i].T_wc.rotation().coeffs()) << i;
+    EXPECT_EQ(a.run.estimate[i].T_wc.rotation().coeffs(),
+              b.run.estimate[i].T_wc.rotation().coeffs())
+        << i;
   }
 }
 
@@ -99,7 +102,8 @@ TEST(Pipeline, WithoutDepthThereIsNoMap) {
 
 TEST(Pipeline, FramesThatDoNotFitAreRefusedAndChangeNothing) {
   Simulator simulator = MakeSimulator("xyz");
-  StatusOr<std::unique_ptr<System>> system = System::Create(PipelineOptions(true), simulator.camera());
+  StatusOr<std::unique_ptr<System>> system =
+      System::Create(PipelineOptions(true), simulator.camera());
   ASSERT_TRUE(system.ok()) << system.message();
   const RgbdFramePtr first = simulator.Render(0).frame;
   ASSERT_TRUE((*system)->Track(first).ok());
@@ -114,10 +118,12 @@ TEST(Pipeline, FramesThatDoNotFitAreRefusedAndChangeNothing) {
 TEST(Pipeline, OptionsThatMakeNoSenseAreNamed) {
   SystemOptions options = PipelineOptions(true);
   options.dynamic = "magic";
-  EXPECT_NE(System::Create(options, *Camera::Preset("simulated")).message().find("magic"), std::string::npos);
+  EXPECT_NE(System::Create(options, *Camera::Preset("simulated")).message().find("magic"),
+            std::string::npos);
   options = PipelineOptions(true);
   options.vocabulary = "/nowhere/words";
-  EXPECT_NE(System::Create(options, *Camera::Preset("simulated")).message().find("/nowhere/words"), std::string::npos);
+  EXPECT_NE(System::Create(options, *Camera::Preset("simulated")).message().find("/nowhere/words"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
-// A gate on real data: the first seconds of TUM fr1_xyz, when the data is at hand (folder in MSF_SEQUENCES, or unpacked by
-// tests/CMakeLists.txt).
-#include <filesystem>
-
+// A gate on real data: the first seconds of TUM fr1_xyz, when the data is at hand (folder in
+// MSF_SEQUENCES, or unpacked by tests/CMakeLists.txt).
 #include <gtest/gtest.h>
+
+#include <filesystem>
 
 #include "tests/pipeline_fixture.h"
 

@@ -7,7 +7,8 @@ namespace {
 
 constexpr double kSmallAngle = 1e-8;
 
-// V of Exp((v, w)) = (exp(w), V v); see Barfoot, State Estimation for Robotics, eq. 7.37 (left Jacobian of SO(3)).
+// V of Exp((v, w)) = (exp(w), V v); see Barfoot, State Estimation for Robotics, eq. 7.37 (left
+// Jacobian of SO(3)).
 Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w) {
   const double angle = w.norm();
   const Eigen::Matrix3d hat = Hat(w);
@@ -39,7 +40,9 @@ Eigen::Vector3d LogRotation(const Eigen::Quaterniond& rotation) {
   return 2 * std::atan2(sine, sign * rotation.w()) / sine * sign * rotation.vec();
 }
 
-double Rigid3d::Angle() const { return 2 * std::atan2(rotation_.vec().norm(), std::abs(rotation_.w())); }
+double Rigid3d::Angle() const {
+  return 2 * std::atan2(rotation_.vec().norm(), std::abs(rotation_.w()));
+}
 
 Rigid3d Rigid3d::Exp(const Vector6d& twist) {
   const Eigen::Vector3d w = twist.tail<3>();

@@ -1,4 +1,5 @@
-// Rigid motions of space, SE(3). Naming: T_cw takes world coordinates to camera coordinates, p_c = T_cw * p_w.
+// Rigid motions of space, SE(3). Naming: T_cw takes world coordinates to camera coordinates, p_c =
+// T_cw * p_w.
 #pragma once
 
 #include <Eigen/Core>
@@ -32,7 +33,9 @@ class Rigid3d {
   // The angle of the rotation, [0, pi] rad.
   double Angle() const;
 
-  Eigen::Vector3d operator*(const Eigen::Vector3d& point) const { return rotation_ * point + translation_; }
+  Eigen::Vector3d operator*(const Eigen::Vector3d& point) const {
+    return rotation_ * point + translation_;
+  }
   Rigid3d operator*(const Rigid3d& other) const {
     return {rotation_ * other.rotation_, rotation_ * other.translation_ + translation_};
   }

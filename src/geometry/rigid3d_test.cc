@@ -1,8 +1,8 @@
 #include "geometry/rigid3d.h"
 
-#include <random>
-
 #include <gtest/gtest.h>
+
+#include <random>
 
 namespace msf {
 namespace {
@@ -38,7 +38,8 @@ TEST(Rigid3d, ExpIsTheMatrixExponential) {
 
 TEST(Rigid3d, InverseAndComposition) {
   std::mt19937 random(3);
-  const Rigid3d a = Rigid3d::Exp(RandomTwist(random, 1.0)), b = Rigid3d::Exp(RandomTwist(random, 2.0));
+  const Rigid3d a = Rigid3d::Exp(RandomTwist(random, 1.0)),
+                b = Rigid3d::Exp(RandomTwist(random, 2.0));
   const Eigen::Vector3d p(1, 2, 3);
   EXPECT_LT(((a * b) * p - a * (b * p)).norm(), 1e-12);
   EXPECT_LT((a.Inverse() * (a * p) - p).norm(), 1e-12);

@@ -6,8 +6,10 @@
 
 namespace msf {
 
-// Culls the neighbours of `around` whose close points are almost all seen by several other keyframes at the same or a finer
-// level. The root of the tree and ends of loops stay. Returns those that went.
-std::vector<KeyFrameId> CullRedundantKeyFrames(const MappingOptions& options, KeyFrameId around, Map& map);
+// Culls the neighbours of `around` whose close points are almost all seen by several other
+// keyframes at the same or a finer level. The root of the tree and ends of loops stay. Returns
+// those that went.
+std::vector<KeyFrameId> CullRedundantKeyFrames(const MappingOptions& options, KeyFrameId around,
+                                               Map& map);
 
 }  // namespace msf

@@ -6,7 +6,8 @@
 namespace msf {
 namespace {
 
-// Gives keyframes and points their index in the problem, in the order in which they are first named.
+// Gives keyframes and points their index in the problem, in the order in which they are first
+// named.
 template <typename Id>
 class Numbering {
  public:
@@ -37,16 +38,19 @@ std::vector<MapPointId> PointsSeenBy(const Map& map, const std::vector<KeyFrameI
 
 // Without a fixed pose the whole could drift: the oldest stays.
 void FixGauge(const std::vector<KeyFrameId>& keyframes, std::vector<BundlePose>& poses) {
-  if (std::any_of(poses.begin(), poses.end(), [](const BundlePose& pose) { return pose.fixed; })) return;
+  if (std::any_of(poses.begin(), poses.end(), [](const BundlePose& pose) { return pose.fixed; }))
+    return;
   poses[std::min_element(keyframes.begin(), keyframes.end()) - keyframes.begin()].fixed = true;
 }
 
 }  // namespace
 
-LocalBundle CopyLocalBundle(const MappingOptions& options, const NoiseOptions& noise, const Map& map, KeyFrameId keyframe) {
+LocalBundle CopyLocalBundle(const MappingOptions& options, const NoiseOptions& noise,
+                            const Map& map, KeyFrameId keyframe) {
   LocalBundle bundle;
   bundle.epoch = map.epoch();
-  std::vector<KeyFrameId> moving = map.covisibility().Best(keyframe, options.max_bundle_keyframes - 1);
+  std::vector<KeyFrameId> moving =
+      map.covisibility().Best(keyframe, options.max_bundle_keyframes - 1);
   moving.insert(moving.begin(), keyframe);
   Numbering<KeyFrameId> numbering;
   const auto add_pose = [&](KeyFrameId id, bool fixed) {
@@ -62,7 +66,8 @@ LocalBundle CopyLocalBundle(const MappingOptions& options, const NoiseOptions& n
     for (const Observation& seen : point.observations) {
       const FrameFeatures& features = *map.FindKeyFrame(seen.keyframe)->features;
       const double weight = std::min(point.static_weight, features.static_weight[seen.feature]);
-      BundleObservation observation{ObserveFeature(features, seen.feature, map.levels(), noise, weight)};
+      BundleObservation observation{
+          ObserveFeature(features, seen.feature, map.levels(), noise, weight)};
       observation.pose = add_pose(seen.keyframe, true);
       observation.point = static_cast<int>(p);
       bundle.problem.observations.push_back(observation);
@@ -77,12 +82,14 @@ void ApplyLocalBundle(const LocalBundle& bundle, const BundleResult& result, Map
   if (!result.usable || bundle.epoch != map.epoch()) return;
   const BundleProblem& problem = bundle.problem;
   for (size_t k = 0; k < bundle.keyframes.size(); ++k) {
-    if (!problem.poses[k].fixed && map.FindKeyFrame(bundle.keyframes[k])) map.SetPose(bundle.keyframes[k], problem.poses[k].T_cw);
+    if (!problem.poses[k].fixed && map.FindKeyFrame(bundle.keyframes[k]))
+      map.SetPose(bundle.keyframes[k], problem.poses[k].T_cw);
   }
   for (size_t o = 0; o < problem.observations.size(); ++o) {
     const BundleObservation& observation = problem.observations[o];
     const MapPointId point = bundle.points[observation.point];
-    if (!result.inlier[o] && map.FindPoint(point)) map.RemoveObservation(point, bundle.keyframes[observation.pose]);
+    if (!result.inlier[o] && map.FindPoint(point))
+      map.RemoveObservation(point, bundle.keyframes[observation.pose]);
   }
   for (size_t p = 0; p < bundle.points.size(); ++p) {
     if (!map.FindPoint(bundle.points[p])) continue;

@@ -11,7 +11,8 @@ namespace msf {
 namespace {
 
 // First neighbours, then some of theirs: where duplicates of a keyframe's points can be.
-std::vector<KeyFrameId> FusionTargets(const Map& map, KeyFrameId id, const MappingOptions& options) {
+std::vector<KeyFrameId> FusionTargets(const Map& map, KeyFrameId id,
+                                      const MappingOptions& options) {
   std::vector<KeyFrameId> targets;
   std::set<KeyFrameId> seen = {id};
   const auto add = [&](const std::vector<KeyFrameId>& candidates) {
@@ -21,7 +22,8 @@ std::vector<KeyFrameId> FusionTargets(const Map& map, KeyFrameId id, const Mappi
   };
   const std::vector<KeyFrameId> first = map.covisibility().Best(id, options.num_neighbours);
   add(first);
-  for (const KeyFrameId neighbour : first) add(map.covisibility().Best(neighbour, options.num_second_neighbours));
+  for (const KeyFrameId neighbour : first)
+    add(map.covisibility().Best(neighbour, options.num_second_neighbours));
   return targets;
 }
 
@@ -75,7 +77,8 @@ bool LocalMapper::Register(KeyFrameId id) {
     features = keyframe->features;
     words = keyframe->words;
   }
-  if (!words) words = std::make_shared<const BagOfWords>(vocabulary_->Transform(features->descriptors));
+  if (!words)
+    words = std::make_shared<const BagOfWords>(vocabulary_->Transform(features->descriptors));
 
   const SharedMap::Writer map = map_.Write();
   const KeyFrame* keyframe = map->FindKeyFrame(id);
@@ -94,11 +97,14 @@ bool LocalMapper::Register(KeyFrameId id) {
   return true;
 }
 
-void LocalMapper::CreatePoints(KeyFrameId id, const std::function<bool()>& hurry, MappingSummary& summary) {
-  const std::vector<KeyFrameId> neighbours = map_.Read()->covisibility().Best(id, options_.num_neighbours);
+void LocalMapper::CreatePoints(KeyFrameId id, const std::function<bool()>& hurry,
+                               MappingSummary& summary) {
+  const std::vector<KeyFrameId> neighbours =
+      map_.Read()->covisibility().Best(id, options_.num_neighbours);
   for (const KeyFrameId neighbour : neighbours) {
     if (summary.created_points > 0 && hurry()) return;
-    const std::vector<NewPoint> points = TriangulateWithNeighbour(options_, *map_.Read(), id, neighbour);
+    const std::vector<NewPoint> points =
+        TriangulateWithNeighbour(options_, *map_.Read(), id, neighbour);
     const SharedMap::Writer map = map_.Write();
     for (const MapPointId point : AddNewPoints(points, id, neighbour, *map)) {
       recent_points_.Add(point);

@@ -28,9 +28,10 @@ class LocalMapper {
   LocalMapper(const MappingOptions& options, const NoiseOptions& noise, SharedMap& map,
               std::shared_ptr<const Vocabulary> vocabulary);
 
-  // Takes a keyframe that tracking has put into the map: describes it in words, culls young points, triangulates, and, unless
-  // `hurry()` says that more keyframes wait, fuses duplicates, adjusts the neighbourhood and culls redundant keyframes.
-  // Keyframes whose map was dropped meanwhile are ignored.
+  // Takes a keyframe that tracking has put into the map: describes it in words, culls young points,
+  // triangulates, and, unless `hurry()` says that more keyframes wait, fuses duplicates, adjusts
+  // the neighbourhood and culls redundant keyframes. Keyframes whose map was dropped meanwhile are
+  // ignored.
   MappingSummary Process(KeyFrameId id, const std::function<bool()>& hurry);
 
   // Ends a bundle adjustment that is under way as soon as possible; callable from any thread.

@@ -1,4 +1,5 @@
-// Options of mapping; the defaults are those of the published RGB-D configurations of ORB-SLAM-class systems.
+// Options of mapping; the defaults are those of the published RGB-D configurations of
+// ORB-SLAM-class systems.
 #pragma once
 
 #include "optimization/bundle_adjustment.h"
@@ -25,16 +26,25 @@ struct MappingOptions {
   void Visit(Visitor& visit) {
     visit("min_found_ratio", min_found_ratio, "young points found less often than expected go");
     visit("max_weak_strength", max_weak_strength,
-          "young points go that after two keyframes have no more observations (one with depth counts twice)");
-    visit("num_neighbours", num_neighbours, "covisible keyframes that a new one is triangulated and fused with");
+          "young points go that after two keyframes have no more observations (one with depth "
+          "counts twice)");
+    visit("num_neighbours", num_neighbours,
+          "covisible keyframes that a new one is triangulated and fused with");
     visit("max_parallax_cosine", max_parallax_cosine, "rays closer to parallel do not triangulate");
-    visit("min_baselines", min_baselines, "keyframes closer together (in virtual baselines) do not triangulate");
-    visit("fuse_radius_px", fuse_radius_px, "search radius for duplicates of a point, px at level 0");
-    visit("num_second_neighbours", num_second_neighbours, "neighbours of neighbours that points are fused with");
-    visit("max_bundle_keyframes", max_bundle_keyframes, "keyframes that move in a local bundle adjustment");
-    visit("redundant_share", redundant_share, "a keyframe goes when this share of its close points ...");
-    visit("redundant_observers", redundant_observers, "... is seen by so many others at the same or a finer level");
-    visit("close_depth_baselines", close_depth_baselines, "depths below this many virtual baselines are close (reliable)");
+    visit("min_baselines", min_baselines,
+          "keyframes closer together (in virtual baselines) do not triangulate");
+    visit("fuse_radius_px", fuse_radius_px,
+          "search radius for duplicates of a point, px at level 0");
+    visit("num_second_neighbours", num_second_neighbours,
+          "neighbours of neighbours that points are fused with");
+    visit("max_bundle_keyframes", max_bundle_keyframes,
+          "keyframes that move in a local bundle adjustment");
+    visit("redundant_share", redundant_share,
+          "a keyframe goes when this share of its close points ...");
+    visit("redundant_observers", redundant_observers,
+          "... is seen by so many others at the same or a finer level");
+    visit("close_depth_baselines", close_depth_baselines,
+          "depths below this many virtual baselines are close (reliable)");
     visit("bundle", bundle, "");
   }
   Status Check() const;

@@ -16,7 +16,8 @@ constexpr float kMinStaticWeight = 0.3f;
 std::vector<uint8_t> FreeFeatures(const KeyFrame& keyframe) {
   std::vector<uint8_t> free(keyframe.points.size());
   for (size_t i = 0; i < free.size(); ++i) {
-    free[i] = !keyframe.points[i].valid() && keyframe.features->static_weight[i] >= kMinStaticWeight;
+    free[i] =
+        !keyframe.points[i].valid() && keyframe.features->static_weight[i] >= kMinStaticWeight;
   }
   return free;
 }
@@ -41,7 +42,8 @@ struct Sight {
   }
 };
 
-std::optional<Eigen::Vector3d> Locate(const MappingOptions& options, const Camera& camera, const Sight& a, const Sight& b) {
+std::optional<Eigen::Vector3d> Locate(const MappingOptions& options, const Camera& camera,
+                                      const Sight& a, const Sight& b) {
   const double parallax_cosine = a.RayInWorld(camera).dot(b.RayInWorld(camera));
   const double stereo_a = a.StereoCosine(camera), stereo_b = b.StereoCosine(camera);
   const bool any_depth = stereo_a < 1 || stereo_b < 1;
@@ -56,24 +58,27 @@ std::optional<Eigen::Vector3d> Locate(const MappingOptions& options, const Camer
 bool AgreesWith(const Sight& sight, const Eigen::Vector3d& p_w, const Map& map) {
   const ImageObservation observation =
       ObserveFeature(sight.features(), sight.feature, map.levels(), NoiseOptions{}, 1);
-  return ReprojectionChi2(map.camera(), sight.keyframe.T_cw * p_w, observation) < Chi2Gates().For(observation);
+  return ReprojectionChi2(map.camera(), sight.keyframe.T_cw * p_w, observation) <
+         Chi2Gates().For(observation);
 }
 
 // The ratio of distances must fit the ratio of the levels at which the point was found.
-bool ScalesAgree(const Sight& a, const Sight& b, const Eigen::Vector3d& p_w, const ScaleLevels& levels) {
+bool ScalesAgree(const Sight& a, const Sight& b, const Eigen::Vector3d& p_w,
+                 const ScaleLevels& levels) {
   const double distance_a = (p_w - a.keyframe.CentreInWorld()).norm();
   const double distance_b = (p_w - b.keyframe.CentreInWorld()).norm();
   if (distance_a <= 0 || distance_b <= 0) return false;
   const double by_distance = distance_b / distance_a;
-  const double by_level = levels.scale(b.features().level[b.feature]) / levels.scale(a.features().level[a.feature]);
+  const double by_level =
+      levels.scale(b.features().level[b.feature]) / levels.scale(a.features().level[a.feature]);
   const double slack = 1.5 * levels.factor();
   return by_distance < by_level * slack && by_distance * slack > by_level;
 }
 
 }  // namespace
 
-std::vector<NewPoint> TriangulateWithNeighbour(const MappingOptions& options, const Map& map, KeyFrameId id,
-                                               KeyFrameId neighbour_id) {
+std::vector<NewPoint> TriangulateWithNeighbour(const MappingOptions& options, const Map& map,
+                                               KeyFrameId id, KeyFrameId neighbour_id) {
   const KeyFrame* keyframe = map.FindKeyFrame(id);
   const KeyFrame* neighbour = map.FindKeyFrame(neighbour_id);
   if (!keyframe || !neighbour || !keyframe->words || !neighbour->words) return {};
@@ -81,10 +86,12 @@ std::vector<NewPoint> TriangulateWithNeighbour(const MappingOptions& options, co
   const double distance_m = (keyframe->CentreInWorld() - neighbour->CentreInWorld()).norm();
   if (distance_m < options.min_baselines * camera.baseline_m()) return {};
 
-  const std::vector<uint8_t> free = FreeFeatures(*keyframe), neighbour_free = FreeFeatures(*neighbour);
-  const auto pairs = MatchByEpipolarLine({*keyframe->features, *keyframe->words, free},
-                                         {*neighbour->features, *neighbour->words, neighbour_free},
-                                         keyframe->T_cw * neighbour->T_cw.Inverse(), camera, map.levels(), {});
+  const std::vector<uint8_t> free = FreeFeatures(*keyframe),
+                             neighbour_free = FreeFeatures(*neighbour);
+  const auto pairs =
+      MatchByEpipolarLine({*keyframe->features, *keyframe->words, free},
+                          {*neighbour->features, *neighbour->words, neighbour_free},
+                          keyframe->T_cw * neighbour->T_cw.Inverse(), camera, map.levels(), {});
   std::vector<NewPoint> points;
   for (const auto& [i, j] : pairs) {
     const Sight a{*keyframe, i}, b{*neighbour, j};
@@ -95,13 +102,16 @@ std::vector<NewPoint> TriangulateWithNeighbour(const MappingOptions& options, co
   return points;
 }
 
-std::vector<MapPointId> AddNewPoints(const std::vector<NewPoint>& points, KeyFrameId id, KeyFrameId neighbour_id, Map& map) {
+std::vector<MapPointId> AddNewPoints(const std::vector<NewPoint>& points, KeyFrameId id,
+                                     KeyFrameId neighbour_id, Map& map) {
   std::vector<MapPointId> added;
   const KeyFrame* keyframe = map.FindKeyFrame(id);
   const KeyFrame* neighbour = map.FindKeyFrame(neighbour_id);
   if (!keyframe || !neighbour) return added;
   for (const NewPoint& point : points) {
-    if (keyframe->points[point.feature].valid() || neighbour->points[point.neighbour_feature].valid()) continue;
+    if (keyframe->points[point.feature].valid() ||
+        neighbour->points[point.neighbour_feature].valid())
+      continue;
     const MapPointId new_id = map.AddPoint(point.p_w, id, point.feature);
     map.AddObservation(new_id, neighbour_id, point.neighbour_feature);
     map.UpdateAppearance(new_id);

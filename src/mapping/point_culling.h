@@ -11,8 +11,8 @@ namespace msf {
 class RecentPoints {
  public:
   void Add(MapPointId id) { points_.push_back(id); }
-  // Removes from the map the points that are found too rarely, or still have too few observers two keyframes later;
-  // after three keyframes a point is established and no longer looked at.
+  // Removes from the map the points that are found too rarely, or still have too few observers two
+  // keyframes later; after three keyframes a point is established and no longer looked at.
   void Cull(const MappingOptions& options, KeyFrameId newest, Map& map);
 
  private:

@@ -15,7 +15,8 @@ struct Projections {
   std::vector<double> disparity_px;
 };
 
-Projections ProjectUnseen(std::span<const MapPointId> points, const KeyFrame& keyframe, double radius_px, const Map& map) {
+Projections ProjectUnseen(std::span<const MapPointId> points, const KeyFrame& keyframe,
+                          double radius_px, const Map& map) {
   Projections result;
   const ViewProjector project(keyframe.T_cw, map.camera(), map.levels());
   for (const MapPointId id : points) {
@@ -35,11 +36,12 @@ Projections ProjectUnseen(std::span<const MapPointId> points, const KeyFrame& ke
 }
 
 // Whether the feature lies where the point projects, within the noise of its level.
-bool Agrees(const FrameFeatures& features, int feature, const ProjectionQuery& query, double disparity_px,
-            const ScaleLevels& levels) {
+bool Agrees(const FrameFeatures& features, int feature, const ProjectionQuery& query,
+            double disparity_px, const ScaleLevels& levels) {
   const Chi2Gates gates;
   const ImageObservation observation = ObserveFeature(features, feature, levels, NoiseOptions{}, 1);
-  const double depth_error_px = observation.HasDepth() ? disparity_px - observation.disparity_px : 0;
+  const double depth_error_px =
+      observation.HasDepth() ? disparity_px - observation.disparity_px : 0;
   const double chi2 = observation.inv_sigma2 * (query.uv_px - observation.uv_px).squaredNorm() +
                       observation.inv_sigma2_disparity * depth_error_px * depth_error_px;
   return chi2 < gates.For(observation);
@@ -47,21 +49,25 @@ bool Agrees(const FrameFeatures& features, int feature, const ProjectionQuery& q
 
 }  // namespace
 
-int FusePoints(std::span<const MapPointId> points, KeyFrameId keyframe_id, double radius_px, Map& map) {
+int FusePoints(std::span<const MapPointId> points, KeyFrameId keyframe_id, double radius_px,
+               Map& map) {
   const KeyFrame& keyframe = *map.FindKeyFrame(keyframe_id);
   const Projections projections = ProjectUnseen(points, keyframe, radius_px, map);
-  const std::vector<int> found =
-      MatchByProjection(*keyframe.features, projections.queries, {.max_distance = kStrictDescriptorDistance});
+  const std::vector<int> found = MatchByProjection(*keyframe.features, projections.queries,
+                                                   {.max_distance = kStrictDescriptorDistance});
   int fused = 0;
   for (size_t q = 0; q < found.size(); ++q) {
     const MapPointId id = projections.ids[q];
     if (found[q] < 0 || !map.FindPoint(id)) continue;
-    if (!Agrees(*keyframe.features, found[q], projections.queries[q], projections.disparity_px[q], map.levels())) continue;
+    if (!Agrees(*keyframe.features, found[q], projections.queries[q], projections.disparity_px[q],
+                map.levels()))
+      continue;
     const MapPointId present = keyframe.points[found[q]];
     if (!present.valid()) {
       fused += map.AddObservation(id, keyframe_id, found[q]);
     } else if (present != id) {
-      const bool keep_present = map.FindPoint(present)->observations.size() > map.FindPoint(id)->observations.size();
+      const bool keep_present =
+          map.FindPoint(present)->observations.size() > map.FindPoint(id)->observations.size();
       map.ReplacePoint(keep_present ? id : present, keep_present ? present : id);
       ++fused;
     }

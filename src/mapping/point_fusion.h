@@ -7,9 +7,10 @@
 
 namespace msf {
 
-// Projects `points` into a keyframe. Where one meets a feature that looks like it, the feature's point and the projected one become
-// one (the better observed stays); a feature without a point is connected. Points the keyframe sees already are left out.
-// Returns how many were fused or connected.
+// Projects `points` into a keyframe. Where one meets a feature that looks like it, the feature's
+// point and the projected one become one (the better observed stays); a feature without a point is
+// connected. Points the keyframe sees already are left out. Returns how many were fused or
+// connected.
 int FusePoints(std::span<const MapPointId> points, KeyFrameId keyframe, double radius_px, Map& map);
 
 }  // namespace msf

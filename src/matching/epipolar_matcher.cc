@@ -20,8 +20,9 @@ Eigen::Matrix3d FundamentalMatrix(const Rigid3d& T_ab, const Camera& camera) {
 
 }  // namespace
 
-std::vector<std::pair<int, int>> MatchByEpipolarLine(const WordImage& a, const WordImage& b, const Rigid3d& T_ab,
-                                                     const Camera& camera, const ScaleLevels& levels,
+std::vector<std::pair<int, int>> MatchByEpipolarLine(const WordImage& a, const WordImage& b,
+                                                     const Rigid3d& T_ab, const Camera& camera,
+                                                     const ScaleLevels& levels,
                                                      const EpipolarMatchOptions& options) {
   const Eigen::Matrix3d F_ba = FundamentalMatrix(T_ab, camera).transpose();
   struct Owner {
@@ -29,24 +30,27 @@ std::vector<std::pair<int, int>> MatchByEpipolarLine(const WordImage& a, const W
     int distance = INT_MAX;
   };
   std::vector<Owner> owner_of_b(b.features.size());
-  ForEachCommonNode(a.words, b.words, [&](const std::vector<int>& of_a, const std::vector<int>& of_b) {
-    for (const int i : of_a) {
-      if (!a.usable[i]) continue;
-      const Eigen::Vector3d line_b = F_ba * a.features.uv_px[i].cast<double>().homogeneous();
-      Owner best;
-      for (const int j : of_b) {
-        if (!b.usable[j]) continue;
-        const int distance = DescriptorDistance(a.features.descriptors[i], b.features.descriptors[j]);
-        if (distance > options.max_distance || distance >= best.distance) continue;
-        const double offset = line_b.dot(b.features.uv_px[j].cast<double>().homogeneous());
-        const double squared_px = offset * offset / line_b.head<2>().squaredNorm();
-        if (squared_px < options.max_chi2 * levels.sigma2(b.features.level[j])) best = {j, distance};
-      }
-      if (best.feature < 0) continue;
-      Owner& owner = owner_of_b[best.feature];
-      if (best.distance < owner.distance) owner = {i, best.distance};
-    }
-  });
+  ForEachCommonNode(
+      a.words, b.words, [&](const std::vector<int>& of_a, const std::vector<int>& of_b) {
+        for (const int i : of_a) {
+          if (!a.usable[i]) continue;
+          const Eigen::Vector3d line_b = F_ba * a.features.uv_px[i].cast<double>().homogeneous();
+          Owner best;
+          for (const int j : of_b) {
+            if (!b.usable[j]) continue;
+            const int distance =
+                DescriptorDistance(a.features.descriptors[i], b.features.descriptors[j]);
+            if (distance > options.max_distance || distance >= best.distance) continue;
+            const double offset = line_b.dot(b.features.uv_px[j].cast<double>().homogeneous());
+            const double squared_px = offset * offset / line_b.head<2>().squaredNorm();
+            if (squared_px < options.max_chi2 * levels.sigma2(b.features.level[j]))
+              best = {j, distance};
+          }
+          if (best.feature < 0) continue;
+          Owner& owner = owner_of_b[best.feature];
+          if (best.distance < owner.distance) owner = {i, best.distance};
+        }
+      });
   std::vector<std::pair<int, int>> pairs;
   for (int j = 0; j < b.features.size(); ++j) {
     if (owner_of_b[j].feature >= 0) pairs.emplace_back(owner_of_b[j].feature, j);

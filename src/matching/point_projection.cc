@@ -8,9 +8,14 @@ constexpr double kNearSlack = 0.8, kFarSlack = 1.2;
 
 }  // namespace
 
-ViewProjector::ViewProjector(const Rigid3d& T_cw, const Camera& camera, const ScaleLevels& levels, double min_view_cosine)
-    : camera_(camera), levels_(levels), R_cw_(T_cw.RotationMatrix()), t_cw_(T_cw.translation()),
-      centre_w_(-(R_cw_.transpose() * t_cw_)), min_view_cosine_(min_view_cosine) {}
+ViewProjector::ViewProjector(const Rigid3d& T_cw, const Camera& camera, const ScaleLevels& levels,
+                             double min_view_cosine)
+    : camera_(camera),
+      levels_(levels),
+      R_cw_(T_cw.RotationMatrix()),
+      t_cw_(T_cw.translation()),
+      centre_w_(-(R_cw_.transpose() * t_cw_)),
+      min_view_cosine_(min_view_cosine) {}
 
 std::optional<ProjectedPoint> ViewProjector::operator()(const PointSnapshot& point) const {
   const Eigen::Vector3d p_c = R_cw_ * point.p_w + t_cw_;
@@ -21,7 +26,9 @@ std::optional<ProjectedPoint> ViewProjector::operator()(const PointSnapshot& poi
   if (!(u >= 0 && u < camera_.width && v >= 0 && v < camera_.height)) return std::nullopt;
   const Eigen::Vector3d ray = point.p_w - centre_w_;
   const double distance_m = ray.norm();
-  if (distance_m < kNearSlack * point.min_distance_m || distance_m > kFarSlack * point.max_distance_m) return std::nullopt;
+  if (distance_m < kNearSlack * point.min_distance_m ||
+      distance_m > kFarSlack * point.max_distance_m)
+    return std::nullopt;
   projected.view_cosine = ray.dot(point.normal) / distance_m;
   if (projected.view_cosine < min_view_cosine_) return std::nullopt;
   projected.u_right_px = u - camera_.bf / p_c.z();
@@ -29,8 +36,9 @@ std::optional<ProjectedPoint> ViewProjector::operator()(const PointSnapshot& poi
   return projected;
 }
 
-std::optional<ProjectedPoint> ProjectIntoView(const PointSnapshot& point, const Rigid3d& T_cw, const Camera& camera,
-                                              const ScaleLevels& levels, double min_view_cosine) {
+std::optional<ProjectedPoint> ProjectIntoView(const PointSnapshot& point, const Rigid3d& T_cw,
+                                              const Camera& camera, const ScaleLevels& levels,
+                                              double min_view_cosine) {
   return ViewProjector(T_cw, camera, levels, min_view_cosine)(point);
 }
 

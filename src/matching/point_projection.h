@@ -14,8 +14,13 @@ namespace msf {
 struct PointSnapshot {
   PointSnapshot() = default;
   explicit PointSnapshot(const MapPoint& point)
-      : id(point.id), p_w(point.p_w), normal(point.normal), min_distance_m(point.min_distance_m),
-        max_distance_m(point.max_distance_m), descriptor(point.descriptor), static_weight(point.static_weight) {}
+      : id(point.id),
+        p_w(point.p_w),
+        normal(point.normal),
+        min_distance_m(point.min_distance_m),
+        max_distance_m(point.max_distance_m),
+        descriptor(point.descriptor),
+        static_weight(point.static_weight) {}
 
   MapPointId id;
   Eigen::Vector3d p_w, normal;
@@ -31,15 +36,17 @@ struct ProjectedPoint {
   int level;           // at which it should look as it did
 };
 
-// Empty when the point lies behind the camera, outside the image, outside [0.8, 1.2] times its distance range, or is seen from more
-// than 60 degrees off its mean direction (`min_view_cosine`).
-std::optional<ProjectedPoint> ProjectIntoView(const PointSnapshot& point, const Rigid3d& T_cw, const Camera& camera,
-                                              const ScaleLevels& levels, double min_view_cosine = 0.5);
+// Empty when the point lies behind the camera, outside the image, outside [0.8, 1.2] times its
+// distance range, or is seen from more than 60 degrees off its mean direction (`min_view_cosine`).
+std::optional<ProjectedPoint> ProjectIntoView(const PointSnapshot& point, const Rigid3d& T_cw,
+                                              const Camera& camera, const ScaleLevels& levels,
+                                              double min_view_cosine = 0.5);
 
 // For many points of one view: the pose as matrices, computed once.
 class ViewProjector {
  public:
-  ViewProjector(const Rigid3d& T_cw, const Camera& camera, const ScaleLevels& levels, double min_view_cosine = 0.5);
+  ViewProjector(const Rigid3d& T_cw, const Camera& camera, const ScaleLevels& levels,
+                double min_view_cosine = 0.5);
   std::optional<ProjectedPoint> operator()(const PointSnapshot& point) const;
 
  private:

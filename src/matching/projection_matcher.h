@@ -25,9 +25,11 @@ struct ProjectionMatchOptions {
   double ratio = 1;
 };
 
-// The feature of each query, -1 = none. Features with a set flag in `taken` (empty: none) are left out; a feature that suits
-// several queries goes to the closest descriptor (ties: the first query).
-std::vector<int> MatchByProjection(const FrameFeatures& features, std::span<const ProjectionQuery> queries,
-                                   const ProjectionMatchOptions& options, std::span<const uint8_t> taken = {});
+// The feature of each query, -1 = none. Features with a set flag in `taken` (empty: none) are left
+// out; a feature that suits several queries goes to the closest descriptor (ties: the first query).
+std::vector<int> MatchByProjection(const FrameFeatures& features,
+                                   std::span<const ProjectionQuery> queries,
+                                   const ProjectionMatchOptions& options,
+                                   std::span<const uint8_t> taken = {});
 
 }  // namespace msf

@@ -1,7 +1,7 @@
 // Matching a local map of 2000 points against an image of 1000 features.
-#include <random>
-
 #include <benchmark/benchmark.h>
+
+#include <random>
 
 #include "matching/projection_matcher.h"
 
@@ -36,7 +36,8 @@ void BM_MatchByProjection(benchmark::State& state) {
                        .max_level = features.level[i],
                        .descriptor = features.descriptors[i]});
   }
-  for (auto _ : state) benchmark::DoNotOptimize(MatchByProjection(features, queries, {.ratio = 0.8}));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(MatchByProjection(features, queries, {.ratio = 0.8}));
 }
 BENCHMARK(BM_MatchByProjection)->Arg(500)->Arg(2000);
 

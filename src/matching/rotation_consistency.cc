@@ -26,7 +26,8 @@ std::vector<bool> ConsistentRotations(const std::vector<float>& angle_changes_ra
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return counts[a] > counts[b]; });
   std::array<bool, kNumBins> kept{};
-  for (int rank = 0; rank < kNumKept; ++rank) kept[order[rank]] = 10 * counts[order[rank]] >= counts[order[0]];
+  for (int rank = 0; rank < kNumKept; ++rank)
+    kept[order[rank]] = 10 * counts[order[rank]] >= counts[order[0]];
 
   std::vector<bool> consistent;
   consistent.reserve(angle_changes_rad.size());

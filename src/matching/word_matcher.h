@@ -1,4 +1,5 @@
-// Matches between two images without knowing their poses: only descriptors below the same node of the vocabulary are compared.
+// Matches between two images without knowing their poses: only descriptors below the same node of
+// the vocabulary are compared.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +26,8 @@ struct WordMatchOptions {
 };
 
 // Pairs (feature of a, feature of b), each feature at most once, ascending by the feature of a.
-std::vector<std::pair<int, int>> MatchByWords(const WordImage& a, const WordImage& b, const WordMatchOptions& options);
+std::vector<std::pair<int, int>> MatchByWords(const WordImage& a, const WordImage& b,
+                                              const WordMatchOptions& options);
 
 // Calls visit(features of a, features of b) for every node that both images have.
 template <typename Visit>
@@ -44,7 +46,7 @@ void ForEachCommonNode(const BagOfWords& a, const BagOfWords& b, const Visit& vi
 }
 
 // Drops the pairs whose patches did not turn with the majority (see rotation_consistency.h).
-std::vector<std::pair<int, int>> KeepConsistentRotations(const std::vector<std::pair<int, int>>& pairs,
-                                                         const FrameFeatures& a, const FrameFeatures& b);
+std::vector<std::pair<int, int>> KeepConsistentRotations(
+    const std::vector<std::pair<int, int>>& pairs, const FrameFeatures& a, const FrameFeatures& b);
 
 }  // namespace msf

@@ -27,7 +27,8 @@ struct NoiseOptions {
           "noise of the virtual disparity bf / depth, px");
     visit("disparity_level_share", disparity_level_share,
           "0: disparity noise equal at all levels; 1: grows like the position's");
-    visit("disparity_knee", disparity_knee, "disparity errors beyond so many sigmas lose their pull; 0: never");
+    visit("disparity_knee", disparity_knee,
+          "disparity errors beyond so many sigmas lose their pull; 0: never");
   }
   Status Check() const {
     const bool ok = position_sigma_px > 0 && disparity_sigma_px > 0 && disparity_level_share >= 0;
@@ -49,7 +50,8 @@ inline ImageObservation ObserveFeature(const FrameFeatures& features, int i,
         noise.disparity_sigma_px * (1 + noise.disparity_level_share * (scale - 1));
     observation.disparity_px = features.uv_px[i].x() - features.u_right_px[i];
     observation.inv_sigma2_disparity = 1 / (sigma_px * sigma_px);
-    if (noise.disparity_knee > 0) observation.inv_knee_disparity = 1 / (noise.disparity_knee * noise.disparity_knee);
+    if (noise.disparity_knee > 0)
+      observation.inv_knee_disparity = 1 / (noise.disparity_knee * noise.disparity_knee);
   }
   observation.weight = static_weight;
   return observation;

@@ -77,9 +77,10 @@ struct ReprojectionJacobian {
   }
 };
 
-// Geman and McClure's kernel on the squared disparity error s (over variance): s / (1 + s * inv_knee). A depth sampled across an
-// edge is wrong by far more than the sensor's noise while the position in the image is right: its disparity then costs at most
-// 1 / inv_knee and pulls no more, and the observation goes on as one without depth. inv_knee = 0 is plain least squares.
+// Geman and McClure's kernel on the squared disparity error s (over variance): s / (1 + s *
+// inv_knee). A depth sampled across an edge is wrong by far more than the sensor's noise while the
+// position in the image is right: its disparity then costs at most 1 / inv_knee and pulls no more,
+// and the observation goes on as one without depth. inv_knee = 0 is plain least squares.
 inline double DisparityCost(double squared_error, double inv_knee) {
   return squared_error / (1 + squared_error * inv_knee);
 }
@@ -133,9 +134,10 @@ inline PointPull PullOnPoint(const Camera& camera, const Eigen::Vector3d& p_c,
   const double scale = observation.weight * (robust ? HuberWeight(chi2, gate) : 1);
   const double w = scale * observation.inv_sigma2;
   const double disparity_error = observation.inv_sigma2_disparity * r.z() * r.z();
-  const double w_d = observation.HasDepth() ? scale * observation.inv_sigma2_disparity *
-                                                  DisparityWeight(disparity_error, observation.inv_knee_disparity)
-                                            : 0;
+  const double w_d = observation.HasDepth()
+                         ? scale * observation.inv_sigma2_disparity *
+                               DisparityWeight(disparity_error, observation.inv_knee_disparity)
+                         : 0;
   const auto [a, b, c, d, e] = ReprojectionJacobian(camera, p_c);
   const double ac = w * a * c, bd = w * b * d;
   PointPull pull;

@@ -1,23 +1,48 @@
 #include "sensor/camera.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
-
-#include <fmt/format.h>
 
 namespace msf {
 namespace {
 
-// Sturm et al. 2012 (TUM RGB-D) and Palazzolo et al. 2019 (Bonn): the calibrations that come with the data sets.
+// Sturm et al. 2012 (TUM RGB-D) and Palazzolo et al. 2019 (Bonn): the calibrations that come with
+// the data sets.
 const std::map<std::string, Camera>& Presets() {
   static const std::map<std::string, Camera> presets = {
-      {"tum_fr1", {.fx = 517.306408, .fy = 516.469215, .cx = 318.643040, .cy = 255.313989, .k1 = 0.262383,
-                   .k2 = -0.953104, .p1 = -0.005358, .p2 = 0.002628, .k3 = 1.163314}},
-      {"tum_fr2", {.fx = 520.908620, .fy = 521.007327, .cx = 325.141442, .cy = 249.701764, .k1 = 0.231222,
-                   .k2 = -0.784899, .p1 = -0.003257, .p2 = -0.000105, .k3 = 0.917205, .depth_factor = 5208}},
+      {"tum_fr1",
+       {.fx = 517.306408,
+        .fy = 516.469215,
+        .cx = 318.643040,
+        .cy = 255.313989,
+        .k1 = 0.262383,
+        .k2 = -0.953104,
+        .p1 = -0.005358,
+        .p2 = 0.002628,
+        .k3 = 1.163314}},
+      {"tum_fr2",
+       {.fx = 520.908620,
+        .fy = 521.007327,
+        .cx = 325.141442,
+        .cy = 249.701764,
+        .k1 = 0.231222,
+        .k2 = -0.784899,
+        .p1 = -0.003257,
+        .p2 = -0.000105,
+        .k3 = 0.917205,
+        .depth_factor = 5208}},
       {"tum_fr3", {.fx = 535.4, .fy = 539.2, .cx = 320.1, .cy = 247.6}},
-      {"bonn", {.fx = 542.822841, .fy = 542.576870, .cx = 315.593520, .cy = 237.756098, .k1 = 0.039903,
-                .k2 = -0.099343, .p1 = -0.000730, .p2 = -0.000144}},
+      {"bonn",
+       {.fx = 542.822841,
+        .fy = 542.576870,
+        .cx = 315.593520,
+        .cy = 237.756098,
+        .k1 = 0.039903,
+        .k2 = -0.099343,
+        .p1 = -0.000730,
+        .p2 = -0.000144}},
       {"simulated", {.fx = 525, .fy = 525, .cx = 319.5, .cy = 239.5}},
   };
   return presets;
@@ -32,7 +57,8 @@ Status Camera::Check() const {
   if (!(depth_factor > 0)) return Status::Error("camera: depth_factor must be positive");
   if (!(fps > 0)) return Status::Error("camera: fps must be positive");
   for (const double value : {cx, cy, k1, k2, p1, p2, k3}) {
-    if (!std::isfinite(value)) return Status::Error("camera: every parameter must be a finite number");
+    if (!std::isfinite(value))
+      return Status::Error("camera: every parameter must be a finite number");
   }
   return Status::Ok();
 }
@@ -48,7 +74,8 @@ Eigen::Vector2d Camera::Distort(const Eigen::Vector2d& ideal_px) const {
 
 Eigen::Vector2d Camera::Undistort(const Eigen::Vector2d& image_px) const {
   if (!HasDistortion()) return image_px;
-  // Fixed-point iteration; the distortion of depth cameras is mild, so it converges far below a thousandth of a pixel.
+  // Fixed-point iteration; the distortion of depth cameras is mild, so it converges far below a
+  // thousandth of a pixel.
   Eigen::Vector2d ideal_px = image_px;
   for (int i = 0; i < 20; ++i) {
     const Eigen::Vector2d step = image_px - Distort(ideal_px);
@@ -61,8 +88,8 @@ Eigen::Vector2d Camera::Undistort(const Eigen::Vector2d& image_px) const {
 StatusOr<Camera> Camera::Preset(const std::string& name) {
   const auto found = Presets().find(name);
   if (found != Presets().end()) return found->second;
-  return Status::Error(fmt::format("'{}' is no known camera; known are {}, or name a YAML file", name,
-                                   fmt::join(PresetNames(), ", ")));
+  return Status::Error(fmt::format("'{}' is no known camera; known are {}, or name a YAML file",
+                                   name, fmt::join(PresetNames(), ", ")));
 }
 
 std::vector<std::string> Camera::PresetNames() {

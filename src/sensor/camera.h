@@ -1,10 +1,10 @@
-// The depth camera: pinhole with Brown distortion for colour, depth registered to colour, and the virtual stereo baseline.
+// The depth camera: pinhole with Brown distortion for colour, depth registered to colour, and the
+// virtual stereo baseline.
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "util/status.h"
 
@@ -14,11 +14,11 @@ namespace msf {
 struct Camera {
   int width = 640;
   int height = 480;
-  double fx = 0, fy = 0, cx = 0, cy = 0;        // px
+  double fx = 0, fy = 0, cx = 0, cy = 0;          // px
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;  // Brown distortion, OpenCV's order
-  double bf = 40;            // focal length times virtual stereo baseline, px m
+  double bf = 40;              // focal length times virtual stereo baseline, px m
   double depth_factor = 5000;  // depth image value of one metre
-  double fps = 30;           // nominal frame rate, Hz
+  double fps = 30;             // nominal frame rate, Hz
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
@@ -53,7 +53,8 @@ struct Camera {
   Eigen::Vector2d Distort(const Eigen::Vector2d& ideal_px) const;
   Eigen::Vector2d Undistort(const Eigen::Vector2d& image_px) const;
 
-  // A known camera: "tum_fr1", "tum_fr2", "tum_fr3", "bonn" or "simulated"; an error lists the names.
+  // A known camera: "tum_fr1", "tum_fr2", "tum_fr3", "bonn" or "simulated"; an error lists the
+  // names.
   static StatusOr<Camera> Preset(const std::string& name);
   static std::vector<std::string> PresetNames();
 };

@@ -12,7 +12,8 @@ TEST(Camera, UndistortInvertsDistort) {
     for (int u = 20; u < 640; u += 60) {
       for (int v = 20; v < 480; v += 60) {
         const Eigen::Vector2d image_px(u, v);
-        EXPECT_LT((camera.Distort(camera.Undistort(image_px)) - image_px).norm(), 1e-4) << name << " " << u << " " << v;
+        EXPECT_LT((camera.Distort(camera.Undistort(image_px)) - image_px).norm(), 1e-4)
+            << name << " " << u << " " << v;
       }
     }
   }

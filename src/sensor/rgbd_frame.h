@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-
 #include <opencv2/core/mat.hpp>
 
 #include "sensor/camera.h"
@@ -10,12 +9,14 @@
 
 namespace msf {
 
-// Colour and registered depth at one time. Shared and never changed once made; the images are not copied.
+// Colour and registered depth at one time. Shared and never changed once made; the images are not
+// copied.
 struct RgbdFrame {
   FrameId id;
-  double time_s = 0;        // of the colour image: the frame's time
-  // Time of the depth image minus time_s. Many depth cameras take the two images up to half a frame apart; while the camera turns, depth then
-  // belongs to pixels some way off, which the system makes up for.
+  double time_s = 0;  // of the colour image: the frame's time
+  // Time of the depth image minus time_s. Many depth cameras take the two images up to half a frame
+  // apart; while the camera turns, depth then belongs to pixels some way off, which the system
+  // makes up for.
   double depth_delay_s = 0;
   cv::Mat color;  // camera.height x camera.width, 8-bit BGR (3 channels) or grey (1 channel)
   cv::Mat depth;  // same size, 16-bit, value / camera.depth_factor = metres, 0 = none

@@ -1,16 +1,17 @@
 #include "util/atomic_file.h"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <system_error>
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 namespace msf {
 
-Status WriteFileAtomically(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write) {
+Status WriteFileAtomically(const std::filesystem::path& path,
+                           const std::function<void(std::ostream&)>& write) {
   const std::filesystem::path temporary = fmt::format("{}.{}.part", path.string(), getpid());
   errno = 0;
   std::ofstream stream(temporary, std::ios::binary);

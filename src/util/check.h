@@ -1,4 +1,5 @@
-// Checks of contracts between our own functions. A failed check is a bug, never a user's mistake (those are a Status).
+// Checks of contracts between our own functions. A failed check is a bug, never a user's mistake
+// (those are a Status).
 #pragma once
 
 #include <stdexcept>
@@ -12,8 +13,10 @@ class ContractViolation : public std::logic_error {
   using std::logic_error::logic_error;
 };
 
-[[noreturn]] inline void FailCheck(const char* file, int line, const char* condition, const std::string& why) {
-  throw ContractViolation(std::string(file) + ":" + std::to_string(line) + ": " + condition + ": " + why);
+[[noreturn]] inline void FailCheck(const char* file, int line, const char* condition,
+                                   const std::string& why) {
+  throw ContractViolation(std::string(file) + ":" + std::to_string(line) + ": " + condition + ": " +
+                          why);
 }
 
 }  // namespace msf

@@ -1,8 +1,8 @@
 #include "util/options.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace msf {
 namespace options_internal {
@@ -13,7 +13,8 @@ Status Reader::Finish() const {
     const std::string key = entry.first.as<std::string>();
     if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
     const std::string where = path_.empty() ? "at the top level" : "in section '" + path_ + "'";
-    return Status::Error(fmt::format("unknown option '{}' {}; known are: {}", key, where, fmt::join(known_, ", ")));
+    return Status::Error(
+        fmt::format("unknown option '{}' {}; known are: {}", key, where, fmt::join(known_, ", ")));
   }
   return Status::Ok();
 }
@@ -32,7 +33,8 @@ StatusOr<YAML::Node> LoadYaml(const std::filesystem::path& file) {
   } catch (const YAML::BadFile&) {
     return Status::Error(file.string() + ": cannot be read; check the path");
   } catch (const YAML::Exception& error) {
-    return Status::Error(fmt::format("{}:{}: not valid YAML: {}", file.string(), error.mark.line + 1, error.msg));
+    return Status::Error(
+        fmt::format("{}:{}: not valid YAML: {}", file.string(), error.mark.line + 1, error.msg));
   }
 }
 
@@ -48,7 +50,7 @@ StatusOr<YAML::Node> ParseAssignment(const std::string& assignment) {
     return Status::Error("the value of '" + assignment + "' cannot be read");
   }
   std::string path = assignment.substr(0, equals);
-  for (size_t dot = path.rfind('.'); ; dot = path.rfind('.')) {
+  for (size_t dot = path.rfind('.');; dot = path.rfind('.')) {
     YAML::Node section(YAML::NodeType::Map);
     section[dot == std::string::npos ? path : path.substr(dot + 1)] = value;
     value = section;

@@ -8,16 +8,18 @@
 //     Status Check() const;   // a sentence when a value makes no sense
 //   };
 //
-// A field that has a Visit() of its own is a section; a std::vector of such fields is a list of sections. From that one list come reading YAML with unknown keys as errors,
-// `--set section.key=value`, the resolved file next to every run's results, and the reference of all options.
+// A field that has a Visit() of its own is a section; a std::vector of such fields is a list of
+// sections. From that one list come reading YAML with unknown keys as errors,
+// `--set section.key=value`, the resolved file next to every run's results, and the reference of
+// all options.
 #pragma once
+
+#include <yaml-cpp/yaml.h>
 
 #include <filesystem>
 #include <string>
 #include <type_traits>
 #include <vector>
-
-#include <yaml-cpp/yaml.h>
 
 #include "util/status.h"
 
@@ -31,7 +33,9 @@ struct AnyVisitor {
 };
 
 template <typename T>
-concept Section = requires(T options, AnyVisitor visitor) { options.Visit(visitor); };
+concept Section = requires(T options, AnyVisitor visitor) {
+  options.Visit(visitor);
+};
 
 template <typename T>
 constexpr bool kIsSectionList = false;
@@ -40,11 +44,16 @@ constexpr bool kIsSectionList<std::vector<T>> = true;
 
 template <typename T>
 std::string TypeName() {
-  if constexpr (std::is_same_v<T, bool>) return "true or false";
-  else if constexpr (std::is_integral_v<T>) return "a whole number";
-  else if constexpr (std::is_floating_point_v<T>) return "a number";
-  else if constexpr (std::is_same_v<T, std::string>) return "text";
-  else return "a list";
+  if constexpr (std::is_same_v<T, bool>)
+    return "true or false";
+  else if constexpr (std::is_integral_v<T>)
+    return "a whole number";
+  else if constexpr (std::is_floating_point_v<T>)
+    return "a number";
+  else if constexpr (std::is_same_v<T, std::string>)
+    return "text";
+  else
+    return "a list";
 }
 
 // Copies the keys of a YAML map into the fields and remembers which keys it knew.
@@ -75,7 +84,8 @@ class Reader {
  private:
   template <typename T>
   static Status ReadSection(const YAML::Node& node, const std::string& path, T& field) {
-    if (!node.IsMap()) return Status::Error("option '" + path + "' is a section and needs keys below it");
+    if (!node.IsMap())
+      return Status::Error("option '" + path + "' is a section and needs keys below it");
     Reader section(node, path);
     field.Visit(section);
     return section.Finish();
@@ -153,10 +163,12 @@ class Describer {
 
 }  // namespace options_internal
 
-// Overwrites the fields that `node` names; an unknown key or a value of the wrong type is an error that names it.
+// Overwrites the fields that `node` names; an unknown key or a value of the wrong type is an error
+// that names it.
 template <typename Options>
 Status ReadOptions(const YAML::Node& node, Options& options) {
-  if (!node.IsMap()) return node.IsNull() ? Status::Ok() : Status::Error("options need the form 'key: value'");
+  if (!node.IsMap())
+    return node.IsNull() ? Status::Ok() : Status::Error("options need the form 'key: value'");
   options_internal::Reader reader(node, "");
   options.Visit(reader);
   return reader.Finish();

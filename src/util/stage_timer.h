@@ -16,7 +16,8 @@ class StageTimer {
   StageTimer(StageTimings& timings, std::string stage)
       : timings_(timings), stage_(std::move(stage)), start_(std::chrono::steady_clock::now()) {}
   ~StageTimer() {
-    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start_;
+    const std::chrono::duration<double, std::milli> elapsed =
+        std::chrono::steady_clock::now() - start_;
     timings_[stage_] += elapsed.count();
   }
   StageTimer(const StageTimer&) = delete;

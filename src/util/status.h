@@ -1,4 +1,5 @@
-// Outcomes as values: a Status says whether something worked and, if not, in one sentence what a user should know and do.
+// Outcomes as values: a Status says whether something worked and, if not, in one sentence what a
+// user should know and do.
 #pragma once
 
 #include <optional>
@@ -35,7 +36,9 @@ class [[nodiscard]] Status {
 template <typename T>
 class [[nodiscard]] StatusOr {
  public:
-  StatusOr(T value) : value_(std::move(value)) {}  // NOLINT(google-explicit-constructor): reads as `return value;`
+  StatusOr(T value)
+      : value_(std::move(value)) {
+  }  // NOLINT(google-explicit-constructor): reads as `return value;`
   StatusOr(Status status) : status_(std::move(status)) {  // NOLINT(google-explicit-constructor)
     MSF_CHECK(!status_.ok(), "StatusOr needs a value or an error");
   }
@@ -70,7 +73,7 @@ class [[nodiscard]] StatusOr {
 }  // namespace msf
 
 // Returns the Status of `expression` from the enclosing function unless it is ok.
-#define MSF_RETURN_IF_ERROR(expression)                         \
-  do {                                                          \
+#define MSF_RETURN_IF_ERROR(expression)                                                  \
+  do {                                                                                   \
     if (::msf::Status msf_status_ = (expression); !msf_status_.ok()) return msf_status_; \
   } while (false)

@@ -30,5 +30,7 @@ using MapId = StrongId<struct MapIdTag>;
 
 template <typename Tag>
 struct std::hash<msf::StrongId<Tag>> {
-  size_t operator()(msf::StrongId<Tag> id) const noexcept { return std::hash<int64_t>()(id.value()); }
+  size_t operator()(msf::StrongId<Tag> id) const noexcept {
+    return std::hash<int64_t>()(id.value());
+  }
 };

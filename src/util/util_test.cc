@@ -1,8 +1,8 @@
+#include <gtest/gtest.h>
+
 #include <filesystem>
 #include <fstream>
 #include <thread>
-
-#include <gtest/gtest.h>
 
 #include "util/atomic_file.h"
 #include "util/bounded_queue.h"
@@ -39,8 +39,12 @@ TEST(Options, SetReachesNestedFields) {
 
 TEST(Options, UnknownKeyAndWrongTypeAreNamed) {
   OuterOptions options;
-  EXPECT_NE(SetOption("inner.radius=7", options).message().find("unknown option 'radius' in section 'inner'"), std::string::npos);
-  EXPECT_NE(SetOption("count=many", options).message().find("'count' needs a whole number"), std::string::npos);
+  EXPECT_NE(SetOption("inner.radius=7", options)
+                .message()
+                .find("unknown option 'radius' in section 'inner'"),
+            std::string::npos);
+  EXPECT_NE(SetOption("count=many", options).message().find("'count' needs a whole number"),
+            std::string::npos);
   EXPECT_FALSE(SetOption("inner=3", options).ok());
   EXPECT_FALSE(SetOption("no assignment", options).ok());
 }
@@ -86,7 +90,8 @@ TEST(AtomicFile, FailedWriteLeavesTheOldFile) {
   std::filesystem::create_directories(folder);
   const std::filesystem::path file = folder / "a.txt";
   ASSERT_TRUE(WriteFileAtomically(file, "old").ok());
-  const Status status = WriteFileAtomically(file, [](std::ostream& stream) { stream.setstate(std::ios::badbit); });
+  const Status status =
+      WriteFileAtomically(file, [](std::ostream& stream) { stream.setstate(std::ios::badbit); });
   EXPECT_FALSE(status.ok());
   EXPECT_NE(status.message().find("a.txt"), std::string::npos);
   std::string content;
