@@ -6,23 +6,37 @@
 namespace msf {
 
 void DeclareRunArguments(CLI::App& command, RunArguments& arguments) {
-  command.add_option("dataset", arguments.dataset, "folder in TUM layout (rgb.txt, depth.txt or associations.txt)")->required();
+  command
+      .add_option("dataset", arguments.dataset,
+                  "folder in TUM layout (rgb.txt, depth.txt or associations.txt)")
+      ->required();
   command.add_option("--camera", arguments.camera,
-                     "tum_fr1, tum_fr2, tum_fr3, bonn, simulated or a YAML file; default: camera.yaml in the folder");
-  command.add_option("--out", arguments.out_folder, "folder for the results; default: out/<name of the dataset>");
-  command.add_option("--config", arguments.config_file, "YAML file with options (config.yaml of an earlier run fits)");
-  command.add_option("--set", arguments.assignments, "one option as section.key=value; may be repeated")
+                     "tum_fr1, tum_fr2, tum_fr3, bonn, simulated or a YAML file; default: "
+                     "camera.yaml in the folder");
+  command.add_option("--out", arguments.out_folder,
+                     "folder for the results; default: out/<name of the dataset>");
+  command.add_option("--config", arguments.config_file,
+                     "YAML file with options (config.yaml of an earlier run fits)");
+  command
+      .add_option("--set", arguments.assignments,
+                  "one option as section.key=value; may be repeated")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("--dynamic", arguments.dynamic, "what happens to moving things: off");
+  command.add_option("--dynamic", arguments.dynamic, "what happens to moving things: off, boxes, paper or full")
+      ->type_name("MODE");
+  command.add_option("--detector", arguments.detector, "model that finds people and things: ONNX file, name of one that ships, or none")
+      ->type_name("MODEL");
   auto* deterministic = command.add_flag("--deterministic", arguments.deterministic,
                                          "all stages on one thread; two runs give equal bytes");
   command
-      .add_flag("--realtime", arguments.real_time, "give frames at the pace of their time stamps; late ones are dropped")
+      .add_flag("--realtime", arguments.real_time,
+                "give frames at the pace of their time stamps; late ones are dropped")
       ->excludes(deterministic);
-  command.add_option("--max-frames", arguments.max_frames, "stop after so many frames");
+  command.add_option("--max-frames", arguments.max_frames, "stop after so many frames")
+      ->check(CLI::PositiveNumber);
   command.add_option("--seed", arguments.seed, "of everything random");
-  command.footer("Options (--set section.key=value), with their defaults:\n" + DescribeOptions<SystemOptions>());
+  command.footer("Options (--set section.key=value), with their defaults:\n" +
+                 DescribeOptions<SystemOptions>());
 }
 
 SystemOptions ResolveOptions(const RunArguments& arguments) {
@@ -30,8 +44,10 @@ SystemOptions ResolveOptions(const RunArguments& arguments) {
   // Frames from a disk can wait for the mapper; those of a camera cannot.
   options.wait_for_mapping = !arguments.real_time;
   if (!arguments.config_file.empty()) Require(LoadOptions(arguments.config_file, options));
-  for (const std::string& assignment : arguments.assignments) Require(SetOption(assignment, options));
-  if (!arguments.dynamic.empty()) options.dynamic = arguments.dynamic;
+  for (const std::string& assignment : arguments.assignments)
+    Require(SetOption(assignment, options));
+  if (!arguments.dynamic.empty()) options.dynamic.mode = arguments.dynamic;
+  if (!arguments.detector.empty()) options.detector.model = arguments.detector;
   if (arguments.deterministic) options.deterministic = true;
   if (arguments.seed) options.seed = *arguments.seed;
   Require(options.Check());

@@ -16,6 +16,7 @@ struct RunArguments {
   std::filesystem::path config_file;
   std::vector<std::string> assignments;
   std::string dynamic;
+  std::string detector;
   bool deterministic = false;
   bool real_time = false;
   size_t max_frames = 0;  // 0: all

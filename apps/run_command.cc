@@ -1,14 +1,14 @@
 // msf-slam run: from a dataset folder to a trajectory, a map and a report.
+#include <fmt/format.h>
+
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <iostream>
 #include <map>
 #include <memory>
-#include <thread>
-
-#include <fmt/format.h>
 #include <opencv2/core/utility.hpp>
+#include <thread>
 
 #include "apps/command.h"
 #include "apps/run_arguments.h"
@@ -47,19 +47,23 @@ class InterruptGuard {
   void (*before_)(int);
 };
 
-double SecondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double SecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 // Says when a frame of a recording would come out of a live camera.
 class Pacer {
  public:
   Pacer(bool real_time, double first_time_s) : real_time_(real_time), first_time_s_(first_time_s) {}
 
-  // Waits for the frame's time. False: its successor's time has come as well, so a live camera would have dropped it.
+  // Waits for the frame's time. False: its successor's time has come as well, so a live camera
+  // would have dropped it.
   bool WaitFor(double time_s, double next_time_s) {
     if (!real_time_) return true;
     if (SecondsSince(start_) > next_time_s - first_time_s_) return false;
-    std::this_thread::sleep_until(start_ + std::chrono::duration_cast<Clock::duration>(
-                                               std::chrono::duration<double>(time_s - first_time_s_)));
+    std::this_thread::sleep_until(start_ +
+                                  std::chrono::duration_cast<Clock::duration>(
+                                      std::chrono::duration<double>(time_s - first_time_s_)));
     return true;
   }
 
@@ -71,7 +75,8 @@ class Pacer {
 
 struct Recording {
   std::vector<FrameRecord> frames;
-  std::vector<int64_t> tracked_index;  // per frame: its place among those given to the system, -1 = not given
+  std::vector<int64_t>
+      tracked_index;  // per frame: its place among those given to the system, -1 = not given
   double time_to_first_pose_s = 0;
 };
 
@@ -87,18 +92,22 @@ FrameRecord RecordOf(const TrackingResult& result) {
 class RunSession {
  public:
   RunSession(const RunArguments& arguments, const SystemOptions& options, TumDataset dataset)
-      : arguments_(arguments), options_(options), dataset_(std::move(dataset)),
+      : arguments_(arguments),
+        options_(options),
+        dataset_(std::move(dataset)),
         system_(Require(System::Create(options, dataset_.camera()))) {}
 
   RunResults Run(Clock::time_point start);
 
  private:
   size_t NumFrames() const {
-    return arguments_.max_frames > 0 ? std::min(arguments_.max_frames, dataset_.size()) : dataset_.size();
+    return arguments_.max_frames > 0 ? std::min(arguments_.max_frames, dataset_.size())
+                                     : dataset_.size();
   }
   Recording TrackAll(Clock::time_point start);
   FrameRecord TrackOne(const StatusOr<RgbdFramePtr>& frame, Recording& recording);
-  void FillPoses(const Reconstruction& reconstruction, const Recording& recording, RunResults& results) const;
+  void FillPoses(const Reconstruction& reconstruction, const Recording& recording,
+                 RunResults& results) const;
   void ReadGroundTruth(RunResults& results) const;
 
   const RunArguments& arguments_;
@@ -112,12 +121,14 @@ Recording RunSession::TrackAll(Clock::time_point start) {
   const size_t count = NumFrames();
   const auto load = [this](size_t i) { return dataset_.Load(i); };
   std::unique_ptr<FramePrefetcher> prefetcher;
-  if (!options_.deterministic) prefetcher = std::make_unique<FramePrefetcher>(count, kFramesAhead, load);
+  if (!options_.deterministic)
+    prefetcher = std::make_unique<FramePrefetcher>(count, kFramesAhead, load);
   Progress progress("run", "frames", static_cast<int>(count));
   Pacer pacer(arguments_.real_time, dataset_.time_s(0));
   for (size_t i = 0; i < count && !interrupted; ++i) {
     const StatusOr<RgbdFramePtr> frame = prefetcher ? *prefetcher->Next() : load(i);
-    const double next_time_s = i + 1 < count ? dataset_.time_s(i + 1) : std::numeric_limits<double>::infinity();
+    const double next_time_s =
+        i + 1 < count ? dataset_.time_s(i + 1) : std::numeric_limits<double>::infinity();
     recording.tracked_index.push_back(-1);
     FrameRecord record;
     if (pacer.WaitFor(dataset_.time_s(i), next_time_s)) {
@@ -127,7 +138,8 @@ Recording RunSession::TrackAll(Clock::time_point start) {
     }
     record.time_s = dataset_.time_s(i);
     recording.frames.push_back(std::move(record));
-    if (recording.time_to_first_pose_s == 0 && recording.frames.back().state == ToString(TrackingState::kTracking)) {
+    if (recording.time_to_first_pose_s == 0 &&
+        recording.frames.back().state == ToString(TrackingState::kTracking)) {
       recording.time_to_first_pose_s = SecondsSince(start);
     }
     progress.Update(static_cast<int>(i) + 1);
@@ -137,7 +149,8 @@ Recording RunSession::TrackAll(Clock::time_point start) {
 
 FrameRecord RunSession::TrackOne(const StatusOr<RgbdFramePtr>& frame, Recording& recording) {
   const Status status = frame.status();
-  StatusOr<TrackingResult> result = status.ok() ? system_->Track(*frame) : StatusOr<TrackingResult>(status);
+  StatusOr<TrackingResult> result =
+      status.ok() ? system_->Track(*frame) : StatusOr<TrackingResult>(status);
   if (!result.ok()) {
     FrameRecord missing;
     missing.state = "missing";
@@ -145,11 +158,13 @@ FrameRecord RunSession::TrackOne(const StatusOr<RgbdFramePtr>& frame, Recording&
     return missing;
   }
   recording.tracked_index.back() =
-      std::count_if(recording.tracked_index.begin(), recording.tracked_index.end(), [](int64_t i) { return i >= 0; });
+      std::count_if(recording.tracked_index.begin(), recording.tracked_index.end(),
+                    [](int64_t i) { return i >= 0; });
   return RecordOf(*result);
 }
 
-void RunSession::FillPoses(const Reconstruction& reconstruction, const Recording& recording, RunResults& results) const {
+void RunSession::FillPoses(const Reconstruction& reconstruction, const Recording& recording,
+                           RunResults& results) const {
   results.frames = recording.frames;
   int elsewhere = 0;
   for (size_t i = 0; i < results.frames.size(); ++i) {
@@ -160,15 +175,19 @@ void RunSession::FillPoses(const Reconstruction& reconstruction, const Recording
       results.frames[i].T_wc = frame.T_wc;
     } else {
       ++elsewhere;
-      results.frames[i].note = fmt::format("tracked in map {}, which was not merged", frame.map_id.value());
+      results.frames[i].note =
+          fmt::format("tracked in map {}, which was not merged", frame.map_id.value());
     }
   }
   if (elsewhere > 0) {
-    results.warnings.push_back(fmt::format(
-        "{} frames were tracked in other maps that could not be merged with the main one; they have no pose", elsewhere));
+    results.warnings.push_back(
+        fmt::format("{} frames were tracked in other maps that could not be merged with the main "
+                    "one; they have no pose",
+                    elsewhere));
   }
   for (const KeyFramePose& keyframe : reconstruction.keyframes) {
-    if (keyframe.map_id == reconstruction.main_map) results.keyframes.push_back({keyframe.time_s, keyframe.T_wc});
+    if (keyframe.map_id == reconstruction.main_map)
+      results.keyframes.push_back({keyframe.time_s, keyframe.T_wc});
   }
   for (const ColoredPoint& point : reconstruction.points) {
     const auto& [b, g, r] = point.color_bgr;
@@ -193,7 +212,9 @@ RunResults RunSession::Run(Clock::time_point start) {
   const Reconstruction reconstruction = system_->Finish();
   RunResults results;
   results.name = fs::canonical(dataset_.folder()).filename().string();
-  results.mode = options_.deterministic ? "deterministic" : arguments_.real_time ? "real time" : "threaded";
+  results.mode = options_.deterministic ? "deterministic"
+                 : arguments_.real_time ? "real time"
+                                        : "threaded";
   FillPoses(reconstruction, recording, results);
   results.num_maps = reconstruction.num_maps;
   results.num_loops = reconstruction.num_loops;
@@ -202,7 +223,8 @@ RunResults RunSession::Run(Clock::time_point start) {
   results.time_to_first_pose_s = recording.time_to_first_pose_s;
   results.usage = ReadProcessUsage();
   results.interrupted = interrupted;
-  results.warnings.insert(results.warnings.begin(), dataset_.warnings().begin(), dataset_.warnings().end());
+  results.warnings.insert(results.warnings.begin(), dataset_.warnings().begin(),
+                          dataset_.warnings().end());
   YAML::Emitter yaml;
   yaml << OptionsToYaml(options_);
   results.config_yaml = std::string(yaml.c_str()) + "\n";
@@ -210,23 +232,35 @@ RunResults RunSession::Run(Clock::time_point start) {
   return results;
 }
 
+std::string WhyNothingWasTracked(const RunResults& results) {
+  if (results.frames.empty()) return "interrupted before the first frame";
+  const auto missing = [](const FrameRecord& frame) { return frame.state == "missing"; };
+  if (std::all_of(results.frames.begin(), results.frames.end(), missing)) {
+    return "no frame could be used; the first: " + results.frames.front().note;
+  }
+  return "no frame could be tracked: none shows enough texture with depth to begin a map; look at "
+         "the images, and at the "
+         "camera's depth_factor";
+}
+
 void Run(const RunArguments& arguments) {
   const Clock::time_point start = Clock::now();
   cv::setNumThreads(1);  // two cores belong to the stages; OpenCV's pool would only disturb them
   const SystemOptions options = ResolveOptions(arguments);
   TumDataset dataset = Require(TumDataset::Open(arguments.dataset, arguments.camera));
-  for (const std::string& warning : dataset.warnings()) std::cerr << "msf-slam: " << warning << "\n";
   fs::path out_folder = arguments.out_folder;
-  if (out_folder.empty()) out_folder = fs::path("out") / fs::canonical(arguments.dataset).filename();
+  if (out_folder.empty())
+    out_folder = fs::path("out") / fs::canonical(arguments.dataset).filename();
 
   RunSession session(arguments, options, std::move(dataset));
+  Require(PrepareRunFolder(out_folder));
   const RunResults results = session.Run(start);
   const RunReport report = MakeRunReport(results);
   const Status written = WriteRunFolder(out_folder, results, report);
   std::cout << FormatRunReport(report);
   Require(written);
   std::cout << "results: " << out_folder.string() << "\n";
-  if (report.num_poses == 0) throw CommandFailure("no frame could be tracked; frames.csv says what became of each");
+  if (report.num_poses == 0) throw CommandFailure(WhyNothingWasTracked(results));
 }
 
 }  // namespace

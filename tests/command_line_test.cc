@@ -1,47 +1,20 @@
 // The program as a user meets it: what it prints, what it writes, how it fails.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <cmath>
-#include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "io/test_folder.h"
 #include "io/trajectory.h"
+#include "tests/program.h"
 
 namespace msf {
 namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
-using testing::Not;
-
-struct Outcome {
-  int exit_code = -1;
-  std::string output;  // stdout and stderr
-};
-
-Outcome RunProgram(const std::string& arguments) {
-  const std::string command = std::string(MSF_PROGRAM) + " " + arguments + " 2>&1";
-  Outcome outcome;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return outcome;
-  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe))
-    outcome.output.push_back(static_cast<char>(c));
-  const int status = pclose(pipe);
-  if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
-  return outcome;
-}
-
-// A user's mistake: one sentence, no crash.
-void ExpectSentence(const Outcome& outcome, const std::string& what) {
-  EXPECT_EQ(outcome.exit_code, 1) << outcome.output;
-  EXPECT_THAT(outcome.output,
-              AllOf(HasSubstr("msf-slam: "), HasSubstr(what), Not(HasSubstr("internal error"))));
-}
 
 Trajectory Spiral() {
   Trajectory t;

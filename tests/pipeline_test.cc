@@ -117,7 +117,7 @@ TEST(Pipeline, FramesThatDoNotFitAreRefusedAndChangeNothing) {
 
 TEST(Pipeline, OptionsThatMakeNoSenseAreNamed) {
   SystemOptions options = PipelineOptions(true);
-  options.dynamic = "magic";
+  options.dynamic.mode = "magic";
   EXPECT_NE(System::Create(options, *Camera::Preset("simulated")).message().find("magic"),
             std::string::npos);
   options = PipelineOptions(true);

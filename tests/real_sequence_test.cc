@@ -11,7 +11,9 @@ namespace {
 
 constexpr int kFrames = 200;
 
-TEST(RealSequence, StartOfFr1XyzIsTrackedAccurately) {
+class RealSequenceTest : public ::testing::TestWithParam<bool> {};
+
+TEST_P(RealSequenceTest, StartOfFr1XyzIsTrackedAccurately) {
   const std::filesystem::path folder = std::filesystem::path(MSF_SEQUENCES) / "fr1_xyz";
   if (!std::filesystem::exists(folder / "rgb.txt")) {
     GTEST_SKIP() << folder.string() << " is not there: the real gate was not run";
@@ -19,13 +21,20 @@ TEST(RealSequence, StartOfFr1XyzIsTrackedAccurately) {
   StatusOr<TumDataset> dataset = TumDataset::Open(folder, "tum_fr1");
   ASSERT_TRUE(dataset.ok()) << dataset.message();
   const auto frame_at = [&](int i) { return dataset->Load(i).value(); };
-  const PipelineRun run = RunPipeline(PipelineOptions(true), dataset->camera(), kFrames, frame_at);
+  const bool deterministic = GetParam();
+  const PipelineRun run =
+      RunPipeline(PipelineOptions(deterministic), dataset->camera(), kFrames, frame_at);
   const StatusOr<Trajectory> truth = ReadTrajectory(*dataset->ground_truth_file());
   ASSERT_TRUE(truth.ok()) << truth.message();
   EXPECT_EQ(run.estimate.size(), static_cast<size_t>(kFrames));
   EXPECT_LT(AbsoluteErrorOf(*truth, run.estimate), 0.0125);
   EXPECT_LT(FrameErrorOf(*truth, run.estimate), 0.0065);
 }
+
+INSTANTIATE_TEST_SUITE_P(Modes, RealSequenceTest, ::testing::Values(true, false),
+                         [](const auto& mode) {
+                           return mode.param ? "Deterministic" : "Threaded";
+                         });
 
 }  // namespace
 }  // namespace msf

@@ -1,11 +1,13 @@
 #include "evaluation/run_folder.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
-#include <algorithm>
+#include <cerrno>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
+#include <system_error>
 
 #include "evaluation/trajectory_plot.h"
 #include "util/atomic_file.h"
@@ -48,13 +50,21 @@ std::string FormatFramesCsv(const std::vector<FrameRecord>& frames) {
   return csv;
 }
 
-Status WriteRunFolder(const std::filesystem::path& folder, const RunResults& results,
-                      const RunReport& report) {
+Status PrepareRunFolder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error)
-    return Status::Error(folder.string() +
-                         ": the results folder cannot be made: " + error.message());
+  if (!error && !std::filesystem::is_directory(folder, error))
+    error = std::make_error_code(std::errc::not_a_directory);
+  if (!error && access(folder.c_str(), W_OK | X_OK) != 0) error = {errno, std::generic_category()};
+  if (!error) return Status::Ok();
+  return Status::Error(
+      fmt::format("{}: the results cannot be written there ({}); name another folder",
+                  folder.string(), error.message()));
+}
+
+Status WriteRunFolder(const std::filesystem::path& folder, const RunResults& results,
+                      const RunReport& report) {
+  MSF_RETURN_IF_ERROR(PrepareRunFolder(folder));
   std::string problems;
   const auto note = [&problems](const Status& status) {
     if (!status.ok()) problems += (problems.empty() ? "" : "\n") + status.message();
@@ -70,6 +80,10 @@ Status WriteRunFolder(const std::filesystem::path& folder, const RunResults& res
     note(WriteFileAtomically(folder / "trajectory.svg",
                              PlotTrajectories(*results.ground_truth, evaluation)));
     note(WriteFileAtomically(folder / "error.svg", PlotErrors(evaluation)));
+  } else {
+    std::error_code ignored;
+    for (const char* name : {"trajectory.svg", "error.svg"})
+      std::filesystem::remove(folder / name, ignored);
   }
   return problems.empty() ? Status::Ok() : Status::Error(problems);
 }

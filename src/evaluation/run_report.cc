@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "evaluation/evaluation_report.h"
@@ -46,6 +48,10 @@ std::map<std::string, TimingSummary> SummarizeTimings(const std::vector<FrameRec
 void AddEvaluation(const RunResults& results, RunReport& report) {
   report.evaluation_problem = results.ground_truth_problem;
   if (!results.ground_truth) return;
+  if (report.num_poses == 0) {
+    report.evaluation_problem = "no frame has a pose";
+    return;
+  }
   StatusOr<Evaluation> evaluation =
       EvaluateTrajectory(results.name, *results.ground_truth, FrameTrajectory(results),
                          {.num_input_frames = results.frames.size()});
@@ -55,8 +61,33 @@ void AddEvaluation(const RunResults& results, RunReport& report) {
     report.evaluation_problem = evaluation.message();
 }
 
-double Rmse(const ErrorSeries& series) {
-  return series.value.empty() ? 0 : ComputeStatistics(series.value).rmse;
+// What could not be used of the input, with the first reason; nothing when all could.
+std::optional<std::string> DescribeMissing(const std::vector<FrameRecord>& frames) {
+  const auto missing = [](const FrameRecord& frame) { return frame.state == "missing"; };
+  const auto first = std::find_if(frames.begin(), frames.end(), missing);
+  if (first == frames.end()) return std::nullopt;
+  return fmt::format("{} of {} frames could not be used; the first is frame {}: {}",
+                     std::count_if(first, frames.end(), missing), frames.size(),
+                     first - frames.begin(), first->note);
+}
+
+// "-" where a trajectory is too short for the error to exist.
+std::string FormatRmse(const ErrorSeries& series, double unit, const char* format) {
+  if (series.value.empty()) return "-";
+  return fmt::format(fmt::runtime(format), ComputeStatistics(series.value).rmse / unit);
+}
+
+std::string FormatErrors(const Evaluation& evaluation) {
+  constexpr double kDegree = std::numbers::pi / 180;
+  std::string text = fmt::format("ATE          {} RMSE\n",
+                                 FormatRmse(evaluation.absolute.translation_m, 1, "{:.4f} m"));
+  const auto add = [&text](const char* name, const RelativeError& errors) {
+    text += fmt::format("{}{}, {} RMSE\n", name, FormatRmse(errors.translation_m, 1, "{:.4f} m"),
+                        FormatRmse(errors.rotation_rad, kDegree, "{:.3f} deg"));
+  };
+  add("RPE 1 frame  ", evaluation.per_frame);
+  add("RPE 1 s      ", evaluation.per_second);
+  return text;
 }
 
 }  // namespace
@@ -90,6 +121,8 @@ RunReport MakeRunReport(const RunResults& results) {
   report.usage = results.usage;
   report.interrupted = results.interrupted;
   report.warnings = results.warnings;
+  if (std::optional<std::string> missing = DescribeMissing(results.frames))
+    report.warnings.push_back(*std::move(missing));
   AddEvaluation(results, report);
   return report;
 }
@@ -139,14 +172,9 @@ std::string FormatRunReport(const RunReport& report) {
                                  report.interrupted ? ", interrupted" : "");
   text += fmt::format("coverage     {:.1f} % ({} of {} frames have a pose)\n",
                       100 * report.Coverage(), report.num_poses, report.num_frames);
+  for (const std::string& warning : report.warnings) text += "warning      " + warning + "\n";
   if (report.evaluation) {
-    const Evaluation& e = *report.evaluation;
-    text += fmt::format("ATE          {:.4f} m RMSE\n", Rmse(e.absolute.translation_m));
-    text += fmt::format("RPE 1 frame  {:.4f} m, {:.3f} deg RMSE\n", Rmse(e.per_frame.translation_m),
-                        Rmse(e.per_frame.rotation_rad) * 180 / std::numbers::pi);
-    text +=
-        fmt::format("RPE 1 s      {:.4f} m, {:.3f} deg RMSE\n", Rmse(e.per_second.translation_m),
-                    Rmse(e.per_second.rotation_rad) * 180 / std::numbers::pi);
+    text += FormatErrors(*report.evaluation);
   } else if (!report.evaluation_problem.empty()) {
     text += "no ATE/RPE   " + report.evaluation_problem + "\n";
   }

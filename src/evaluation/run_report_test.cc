@@ -93,8 +93,22 @@ TEST(RunReport, ARunWithoutTruthOrPosesIsReportedToo) {
   for (FrameRecord& frame : lost.frames) frame.T_wc.reset();
   const RunReport without_poses = MakeRunReport(lost);
   EXPECT_EQ(without_poses.Coverage(), 0);
-  EXPECT_THAT(without_poses.evaluation_problem, HasSubstr("0 of 0"));
+  EXPECT_EQ(without_poses.evaluation_problem, "no frame has a pose");
   EXPECT_EQ(MakeRunReport(RunResults{}).Coverage(), 0);
+}
+
+TEST(RunReport, FramesThatCouldNotBeUsedAreAWarning) {
+  const RunReport report = MakeRunReport(TenFrames());
+  const std::string warning =
+      "1 of 10 frames could not be used; the first is frame 2: rgb/2.png: is \"no\" image";
+  EXPECT_THAT(report.warnings, testing::ElementsAre(warning));
+  EXPECT_THAT(FormatRunReport(report), HasSubstr(warning));
+}
+
+TEST(RunReport, AnErrorThatDoesNotExistIsNotZero) {
+  RunResults results = TenFrames();
+  results.frames.erase(results.frames.begin(), results.frames.begin() + 7);  // half a second
+  EXPECT_THAT(FormatRunReport(MakeRunReport(results)), HasSubstr("RPE 1 s      -, - RMSE"));
 }
 
 TEST(RunFolder, HoldsEveryFile) {
@@ -116,6 +130,18 @@ TEST(RunFolder, HoldsEveryFile) {
               HasSubstr("\n2,100.500000,missing,0,20,,,,\"rgb/2.png: is \"\"no\"\" image\"\n"));
 }
 
+TEST(RunFolder, PlotsOfAnEarlierRunDoNotStay) {
+  const TestFolder folder;
+  RunResults results = TenFrames();
+  ASSERT_TRUE(WriteRunFolder(folder.path(), results, MakeRunReport(results)).ok());
+  EXPECT_TRUE(std::filesystem::exists(folder / "error.svg"));
+  results.ground_truth.reset();
+  ASSERT_TRUE(WriteRunFolder(folder.path(), results, MakeRunReport(results)).ok());
+  EXPECT_FALSE(std::filesystem::exists(folder / "error.svg"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "trajectory.svg"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "trajectory.txt"));
+}
+
 TEST(RunFolder, OneFileThatFailsDoesNotTakeTheOthersAlong) {
   const TestFolder folder;
   const RunResults results = TenFrames();
@@ -127,7 +153,8 @@ TEST(RunFolder, OneFileThatFailsDoesNotTakeTheOthersAlong) {
 
   folder.Write("file", "");
   EXPECT_THAT(WriteRunFolder(folder / "file/out", results, MakeRunReport(results)).message(),
-              HasSubstr("cannot be made"));
+              HasSubstr("the results cannot be written there"));
+  EXPECT_FALSE(PrepareRunFolder(folder / "file").ok());
 }
 
 }  // namespace

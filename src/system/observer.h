@@ -1,6 +1,7 @@
 // Those who want to know what happens: viewers, loggers, recorders. The system never asks whether they exist.
 #pragma once
 
+#include "dynamic/dynamic_filter.h"
 #include "loop_closing/loop_closer.h"
 #include "mapping/local_mapper.h"
 #include "tracking/tracking_result.h"
@@ -11,6 +12,8 @@ namespace msf {
 class Observer {
  public:
   virtual ~Observer() = default;
+  // What was found to move, before the frame is tracked on the rest. `features`: all, also those that are not used. Not called in mode off.
+  virtual void OnDynamics(const RgbdFrame& /*frame*/, const FrameFeatures& /*features*/, const DynamicResult& /*result*/) {}
   virtual void OnFrame(const TrackingResult& /*result*/) {}
   virtual void OnKeyFrameMapped(KeyFrameId /*id*/, const MappingSummary& /*summary*/) {}
   // A loop was closed or two maps became one.

@@ -31,24 +31,31 @@ StatusOr<std::shared_ptr<const Vocabulary>> LoadVocabulary(const std::string& fi
 }  // namespace
 
 Status SystemOptions::Check() const {
-  if (dynamic != "off") return Status::Error("dynamic: '" + dynamic + "' is not available; known is: off");
   for (const Status& status :
-       {feature.Check(), noise.Check(), tracking.Check(), mapping.Check(), loop_closing.Check()}) {
+       {detection.Check(), dynamic.Check(), feature.Check(), noise.Check(), tracking.Check(), mapping.Check(), loop_closing.Check()}) {
     if (!status.ok()) return status;
   }
+  if (WantsDetector()) return detector.Check();
   return Status::Ok();
 }
 
 // The stages and, in threaded mode, the workers that carry keyframes from one to the next.
 class System::Impl {
  public:
-  Impl(const SystemOptions& options, const Camera& camera, std::shared_ptr<const Vocabulary> vocabulary);
+  Impl(const SystemOptions& options, const Camera& camera, std::shared_ptr<const Vocabulary> vocabulary,
+       std::unique_ptr<Detector> detector);
+
+  // The filter of dynamic points; none in mode off.
+  Status MakeFilter(const std::vector<std::string>& class_names);
 
   StatusOr<TrackingResult> Track(const RgbdFramePtr& frame);
   Reconstruction Finish();
   void AddObserver(std::shared_ptr<Observer> observer) { observers_.push_back(std::move(observer)); }
 
  private:
+  void OfferToDetector(const RgbdFramePtr& frame, StageTimings& timings_ms);
+  FrameFeatures Extract(const RgbdFrame& frame, StageTimings& timings_ms);
+  FrameFeatures DropDynamicPoints(const RgbdFramePtr& frame, FrameFeatures features, StageTimings& timings_ms);
   MappingLoad Load() const;
   void HandOn(KeyFrameId id);
   void MapKeyFrame(KeyFrameId id);
@@ -59,6 +66,8 @@ class System::Impl {
   const SystemOptions options_;
   const std::shared_ptr<const Camera> camera_;
   OrbExtractor extractor_;
+  std::unique_ptr<DynamicFilter> filter_;              // null in mode off
+  std::unique_ptr<DetectionSource> detection_source_;  // null without a detector
   SharedMap map_;
   KeyFrameDatabase database_;
   Tracker tracker_;
@@ -67,7 +76,8 @@ class System::Impl {
   FullBundle full_bundle_;
   TrajectoryRecorder recorder_;
   std::vector<std::shared_ptr<Observer>> observers_;
-  double last_time_s_ = -1e300;
+  double last_time_s_ = -1e300;      // of the present frame
+  double previous_time_s_ = -1e300;  // of the one before it
   std::atomic<int> num_loops_ = 0, num_merges_ = 0;
   std::atomic<bool> cancel_full_bundle_ = false;
   // Null in deterministic mode. Declared last so that they stop before what they work on goes.
@@ -76,7 +86,8 @@ class System::Impl {
   std::unique_ptr<Worker<KeyFrameId>> mapping_worker_;
 };
 
-System::Impl::Impl(const SystemOptions& options, const Camera& camera, std::shared_ptr<const Vocabulary> vocabulary)
+System::Impl::Impl(const SystemOptions& options, const Camera& camera, std::shared_ptr<const Vocabulary> vocabulary,
+                   std::unique_ptr<Detector> detector)
     : options_(options), camera_(std::make_shared<const Camera>(camera)), extractor_(options.feature),
       map_(Map(camera_, extractor_.levels())),
       tracker_({options.tracking, options.relocalization, options.noise, options.seed}, camera_, extractor_.levels(),
@@ -84,6 +95,9 @@ System::Impl::Impl(const SystemOptions& options, const Camera& camera, std::shar
       mapper_(options.mapping, options.noise, map_, vocabulary),
       loop_closer_(options.loop_closing, options.noise, map_, database_, options.seed),
       full_bundle_(options.loop_closing, options.noise, map_) {
+  if (detector) {
+    detection_source_ = std::make_unique<DetectionSource>(std::move(detector), options.detection, !options.deterministic);
+  }
   if (options.deterministic) return;
   full_bundle_worker_ = std::make_unique<Worker<MapId>>(kFullBundleQueue, [this](MapId id) {
     cancel_full_bundle_ = false;
@@ -98,29 +112,55 @@ StatusOr<TrackingResult> System::Impl::Track(const RgbdFramePtr& frame) {
   if (!(frame->time_s > last_time_s_)) {
     return Status::Error("frame " + std::to_string(frame->id.value()) + " is not later than the one before it");
   }
+  previous_time_s_ = last_time_s_;
   last_time_s_ = frame->time_s;
 
   if (options_.wait_for_mapping && mapping_worker_) mapping_worker_->WaitUntilBegun();
 
   StageTimings timings_ms;
-  std::shared_ptr<const FrameFeatures> features;
-  {
-    const StageTimer timer(timings_ms, "feature");
-    features = std::make_shared<const FrameFeatures>(
-        extractor_.Extract(*frame, tracker_.PredictMotion(frame->depth_delay_s)));
-  }
+  if (detection_source_) OfferToDetector(frame, timings_ms);
+  FrameFeatures all = Extract(*frame, timings_ms);
+  if (filter_) all = DropDynamicPoints(frame, std::move(all), timings_ms);
+  auto features = std::make_shared<const FrameFeatures>(std::move(all));
   TrackingResult result;
   {
     const StageTimer timer(timings_ms, "tracking");
     result = tracker_.Track(frame, std::move(features), Load());
   }
   for (const auto& [stage, ms] : result.timings_ms) timings_ms["tracking." + stage] = ms;
-  timings_ms["total"] = timings_ms["feature"] + timings_ms["tracking"];
+  timings_ms["total"] = 0;
+  for (const char* stage : {"detection", "feature", "dynamic", "tracking"}) {
+    if (timings_ms.contains(stage)) timings_ms["total"] += timings_ms[stage];
+  }
   result.timings_ms = std::move(timings_ms);
   recorder_.Record(result);
   if (result.new_keyframe) HandOn(*result.new_keyframe);
   for (const auto& observer : observers_) observer->OnFrame(result);
   return result;
+}
+
+void System::Impl::OfferToDetector(const RgbdFramePtr& frame, StageTimings& timings_ms) {
+  const StageTimer timer(timings_ms, "detection");
+  if (options_.wait_for_mapping) detection_source_->WaitUntilTaken();
+  detection_source_->Offer(frame);
+}
+
+FrameFeatures System::Impl::Extract(const RgbdFrame& frame, StageTimings& timings_ms) {
+  const StageTimer timer(timings_ms, "feature");
+  const Rigid3d T_depth_color = tracker_.PredictMotion(frame.depth_delay_s);
+  if (!filter_) return extractor_.Extract(frame, T_depth_color);
+  const int num_features = static_cast<int>(options_.feature.num_features * filter_->FeatureFactor());
+  return extractor_.Extract(frame, num_features, T_depth_color);
+}
+
+FrameFeatures System::Impl::DropDynamicPoints(const RgbdFramePtr& frame, FrameFeatures features, StageTimings& timings_ms) {
+  const StageTimer timer(timings_ms, "dynamic");
+  const std::shared_ptr<const Detections> detections = detection_source_ ? detection_source_->Newest(frame->id) : nullptr;
+  const double since_last_s = frame->time_s - previous_time_s_;
+  const Rigid3d T_last_now = tracker_.PredictMotion(since_last_s).Inverse();
+  const DynamicResult result = filter_->Classify(*frame, features, T_last_now, detections.get());
+  for (const auto& observer : observers_) observer->OnDynamics(*frame, features, result);
+  return KeepStatic(features, result.labels, options_.dynamic.min_static_probability, *camera_);
 }
 
 MappingLoad System::Impl::Load() const {
@@ -199,15 +239,43 @@ Reconstruction System::Impl::Resolve(const Map& map) const {
   result.num_maps = static_cast<int>(map.MapIds().size());
   result.num_loops = num_loops_;
   result.num_merges = num_merges_;
+  if (detection_source_) result.detection = detection_source_->statistics();
   return result;
+}
+
+Status System::Impl::MakeFilter(const std::vector<std::string>& class_names) {
+  if (options_.dynamic.mode == "off") return Status::Ok();
+  StatusOr<std::unique_ptr<DynamicFilter>> filter =
+      DynamicFilter::Create(options_.dynamic, *camera_, extractor_.levels(), class_names, options_.seed);
+  if (!filter.ok()) return filter.status();
+  filter_ = *std::move(filter);
+  return Status::Ok();
 }
 
 StatusOr<std::unique_ptr<System>> System::Create(const SystemOptions& options, const Camera& camera) {
   if (const Status status = options.Check(); !status.ok()) return status;
-  if (const Status status = camera.Check(); !status.ok()) return status;
+  if (!options.WantsDetector()) return Create(options, camera, nullptr);
+  DetectorOptions detector_options = options.detector;
+  // Weak detections may continue an object that is known already.
+  detector_options.confidence = std::min(detector_options.confidence, options.dynamic.tracks.continue_score);
+  StatusOr<std::unique_ptr<Detector>> detector = MakeDetector(detector_options);
+  if (!detector.ok()) return detector.status();
+  return Create(options, camera, *std::move(detector));
+}
+
+StatusOr<std::unique_ptr<System>> System::Create(const SystemOptions& options, const Camera& camera, std::unique_ptr<Detector> detector) {
+  for (const Status& status : {options.Check(), camera.Check()}) {
+    if (!status.ok()) return status;
+  }
+  const std::string& mode = options.dynamic.mode;
+  if (!detector && (mode == "boxes" || mode == "paper"))
+    return Status::Error("dynamic.mode " + mode + " needs a detector, but detector.model is none");
   StatusOr<std::shared_ptr<const Vocabulary>> vocabulary = LoadVocabulary(options.vocabulary);
   if (!vocabulary.ok()) return vocabulary.status();
-  return std::unique_ptr<System>(new System(std::make_unique<Impl>(options, camera, *vocabulary)));
+  const std::vector<std::string> class_names = detector ? detector->class_names() : std::vector<std::string>();
+  auto impl = std::make_unique<Impl>(options, camera, *vocabulary, std::move(detector));
+  if (const Status status = impl->MakeFilter(class_names); !status.ok()) return status;
+  return std::unique_ptr<System>(new System(std::move(impl)));
 }
 
 System::System(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -33,12 +33,15 @@ struct Reconstruction {
   int num_maps = 0;
   int num_loops = 0;   // loops closed
   int num_merges = 0;  // maps merged
+  DetectionStatistics detection;
 };
 
 class System {
  public:
   // An error (unreadable vocabulary, options or camera that make no sense) is a sentence.
   static StatusOr<std::unique_ptr<System>> Create(const SystemOptions& options, const Camera& camera);
+  // With a detector of the caller's own in place of options.detector.
+  static StatusOr<std::unique_ptr<System>> Create(const SystemOptions& options, const Camera& camera, std::unique_ptr<Detector> detector);
   ~System();
   System(const System&) = delete;
   System& operator=(const System&) = delete;

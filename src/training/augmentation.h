@@ -16,6 +16,7 @@ namespace msf {
 struct LabeledImage {
   cv::Mat pixels;
   std::vector<VocObject> objects;
+  bool upright = true;  // not rotated by more than 10 degrees
 };
 
 struct AugmentationOptions {

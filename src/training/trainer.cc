@@ -163,12 +163,12 @@ EpochSampler Trainer::Sampler(int epoch, double mosaic) const {
   return {images_, sampling, static_cast<uint64_t>(options_.seed), epoch};
 }
 
-HeadOutputs Trainer::ForwardForTraining(const torch::Tensor& images, torch::Tensor& distance) {
+HeadOutputs Trainer::ForwardForTraining(const Batch& batch, torch::Tensor& distance) {
   const MixedPrecision mixed(options_.bfloat16);
   const int frozen =
       options_.freeze_layers > 0 ? network_.graph().layers[options_.freeze_layers - 1].end : 1;
   std::vector<torch::Tensor> values(network_.graph().nodes.size());
-  values[0] = images.contiguous(torch::MemoryFormat::ChannelsLast);
+  values[0] = batch.images.contiguous(torch::MemoryFormat::ChannelsLast);
   {
     const torch::NoGradGuard no_grad;
     network_.set_training(false);
@@ -178,19 +178,23 @@ HeadOutputs Trainer::ForwardForTraining(const torch::Tensor& images, torch::Tens
   network_.RunNodes(frozen, static_cast<int>(values.size()), values);
   HeadOutputs heads = network_.HeadsOf(values);
   distance = torch::zeros({});
-  if (teacher_ && options_.imitation > 0.0) {
+  // The teacher has never seen rotated pictures: what it says about them would do harm.
+  if (teacher_ && options_.imitation > 0.0 && batch.upright.numel() > 0) {
     const HeadOutputs wanted = [&] {
       const torch::NoGradGuard no_grad;
-      return teacher_->Forward(images);
+      return teacher_->Forward(batch.images.index_select(0, batch.upright));
     }();
-    distance = ClassDistance(heads, wanted);
+    HeadOutputs given;
+    for (const torch::Tensor& map : heads.classes)
+      given.classes.push_back(map.index_select(0, batch.upright));
+    distance = ClassDistance(given, wanted);
   }
   return heads;
 }
 
 double Trainer::TrainStep(const Batch& batch, EpochRecord& record) {
   torch::Tensor distance;
-  const HeadOutputs heads = ForwardForTraining(batch.images, distance);
+  const HeadOutputs heads = ForwardForTraining(batch, distance);
   const LossTerms terms = DetectionLoss(DecodeHeads(heads, options_.side), batch.labels);
   const auto images = static_cast<double>(options_.batch);
   const torch::Tensor total = images * (terms.total + options_.imitation * distance);

@@ -60,9 +60,9 @@ struct TrainOptions {
     visit("distill_rate", distill_rate, "largest learning rate (AdamW) of those passes");
     visit("new_rate", new_rate,
           "new layers learn this many times as fast as those with starting weights");
-    visit(
-        "imitation", imitation,
-        "weight of the distance to the class logits of the network that gave the starting weights");
+    visit("imitation", imitation,
+          "weight of the distance to the class logits of the network that gave the starting weights, "
+          "on pictures that are not rotated");
     visit("average_decay", average_decay,
           "decay of the moving average of weights that is kept in the end");
     visit("average_ramp", average_ramp, "updates over which that decay rises");
@@ -127,8 +127,9 @@ class Trainer {
   void Distill();
   void TrainEpoch(int epoch);
   EpochSampler Sampler(int epoch, double mosaic) const;
-  // Outputs for a batch, gradients recorded, and their distance to the teacher's (0 without one).
-  HeadOutputs ForwardForTraining(const torch::Tensor& images, torch::Tensor& distance);
+  // Outputs for a batch, gradients recorded, and the distance to the teacher's on the pictures that
+  // are upright (0 without a teacher or such pictures).
+  HeadOutputs ForwardForTraining(const Batch& batch, torch::Tensor& distance);
   std::set<std::string> TrainedParameters() const;
   // The blocks without starting weights: new convolutions with their norms.
   std::set<std::string> NewParameters() const;

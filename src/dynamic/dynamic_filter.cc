@@ -1,0 +1,427 @@
+#include "dynamic/dynamic_filter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <opencv2/core.hpp>
+
+#include "dynamic/moving_clusters.h"
+
+namespace msf {
+namespace {
+
+// Static probabilities. Points that are not used at all have less than DynamicOptions::min_static_probability.
+constexpr float kOnObject = 0.05f;
+constexpr float kMovesTwice = 0.1f;
+constexpr float kMovesOnce = 0.25f;
+constexpr float kMovedSlowly = 0.6f;
+constexpr float kReadmittedWeight = 0.3f;
+
+// Detections come from outside: boxes are cut to the image, what makes no sense is left out.
+std::vector<Detection> Sane(const std::vector<Detection>& detections, const Camera& camera) {
+  std::vector<Detection> sane;
+  for (Detection detection : detections) {
+    ImageBox& box = detection.box;
+    if (!std::isfinite(box.x0 + box.y0 + box.x1 + box.y1) || !std::isfinite(detection.score)) continue;
+    box = {std::max(box.x0, 0.0f), std::max(box.y0, 0.0f), std::min(box.x1, static_cast<float>(camera.width)),
+           std::min(box.y1, static_cast<float>(camera.height))};
+    constexpr float kSmallest_px = 4;
+    if (box.width() >= kSmallest_px && box.height() >= kSmallest_px) sane.push_back(detection);
+  }
+  std::stable_sort(sane.begin(), sane.end(), [](const Detection& a, const Detection& b) { return a.score > b.score; });
+  return sane;
+}
+
+ImageBox Moved(const ImageBox& box, const Eigen::Vector2f& by) {
+  return {box.x0 + by.x(), box.y0 + by.y(), box.x1 + by.x(), box.y1 + by.y()};
+}
+
+Eigen::Vector2f Centre(const ImageBox& box) { return {0.5f * (box.x0 + box.x1), 0.5f * (box.y0 + box.y1)}; }
+
+// Component-wise median.
+std::optional<Eigen::Vector2f> MedianOf(const std::vector<Eigen::Vector2f>& shifts, size_t at_least) {
+  if (shifts.size() < at_least) return std::nullopt;
+  std::vector<float> x, y;
+  for (const Eigen::Vector2f& shift : shifts) {
+    x.push_back(shift.x());
+    y.push_back(shift.y());
+  }
+  const auto middle = static_cast<std::ptrdiff_t>(x.size() / 2);
+  std::nth_element(x.begin(), x.begin() + middle, x.end());
+  std::nth_element(y.begin(), y.begin() + middle, y.end());
+  return Eigen::Vector2f(x[middle], y[middle]);
+}
+
+// What the camera's motion alone does to a pixel of the past image: how far it moves until now.
+Eigen::Vector2f CameraShift(const Camera& camera, const Rigid3d& T_now_past, const Eigen::Vector2f& past_px, double depth_m) {
+  constexpr double kUnknownDepth_m = 2;
+  const Eigen::Vector3d p =
+      T_now_past * camera.Unproject(camera.Undistort(past_px.cast<double>()), depth_m > 0 ? depth_m : kUnknownDepth_m);
+  if (p.z() <= 0) return Eigen::Vector2f::Zero();
+  return camera.Distort(camera.Project(p)).cast<float>() - past_px;
+}
+
+}  // namespace
+
+StatusOr<std::unique_ptr<DynamicFilter>> DynamicFilter::Create(const DynamicOptions& options, const Camera& camera,
+                                                               const ScaleLevels& levels, const std::vector<std::string>& class_names,
+                                                               uint64_t seed) {
+  if (const Status status = options.Check(); !status.ok()) return status;
+  StatusOr<ClassRoles> roles = ClassRoles::Create(options, class_names);
+  if (!roles.ok()) return roles.status();
+  return std::unique_ptr<DynamicFilter>(new DynamicFilter(options, camera, levels, *std::move(roles), seed));
+}
+
+DynamicFilter::DynamicFilter(const DynamicOptions& options, const Camera& camera, const ScaleLevels& levels, ClassRoles roles,
+                             uint64_t seed)
+    : options_(options), camera_(camera), levels_(levels), seed_(seed), flow_options_(options.flow),
+      tracks_(options.tracks, std::move(roles)) {
+  if (options.mode == "paper") {
+    flow_options_.shrink = 1;
+    flow_options_.window_px = options.paper_window_px;
+  }
+}
+
+DynamicResult DynamicFilter::Classify(const RgbdFrame& frame, const FrameFeatures& features, const Rigid3d& T_last_now_predicted,
+                                      const Detections* detections) {
+  DynamicResult result;
+  result.labels = PointLabels(features.size());
+  if (options_.mode == "off") return result;
+  Work work{.frame = frame, .features = features};
+  work.all.resize(features.size());
+  std::iota(work.all.begin(), work.all.end(), 0);
+  work.view.frame = frame.id;
+  work.view.time_s = frame.time_s;
+  work.view.depth = CoarseDepth(frame);
+  if (options_.mode != "boxes") work.view.image = FlowImage(frame.color, flow_options_);
+  if (detections) {
+    result.detection_age = static_cast<int>(frame.id.value() - detections->frame.value());
+    if (options_.mode == "full") {
+      TakeDetections(*detections, work);
+    } else {
+      work.detections = Sane(detections->objects, camera_);
+    }
+  }
+  if (options_.mode == "full") {
+    ClassifyByMotion(work, T_last_now_predicted, result);
+  } else {
+    DropInBoxes(work, result);
+    if (options_.mode == "paper") DropByRawFlow(work, result);
+  }
+  Describe(work, result);
+  Remember(work, result);
+  return result;
+}
+
+void DynamicFilter::DropInBoxes(const Work& work, DynamicResult& result) const {
+  result.mask = cv::Mat1b(work.view.depth.rows(), work.view.depth.cols(), static_cast<uint8_t>(0));
+  for (const Detection& detection : work.detections) {
+    const std::optional<ObjectKind> kind = tracks_.roles().KindOf(detection.class_id);
+    if (!kind || detection.score < (*kind == ObjectKind::kKnown ? options_.tracks.start_score : options_.tracks.potential_score)) continue;
+    result.mask |= WholeBox(work.view.depth, detection.box).cells;
+    result.objects.push_back({.name = tracks_.roles().NameOf(detection.class_id), .kind = *kind, .removed = true, .score = detection.score, .box = detection.box});
+    for (const int i : work.all) {
+      const Eigen::Vector2f& px = work.features.image_px[i];
+      if (detection.box.Contains(px.x(), px.y())) result.labels.Set(i, PointReason::kBox, kOnObject);
+    }
+  }
+}
+
+// Table 2 of the paper as printed: the raw flow, camera motion included, must not exceed L.
+void DynamicFilter::DropByRawFlow(const Work& work, DynamicResult& result) const {
+  if (past_.empty()) return;
+  const std::vector<FlowPoint> flow = FollowPoints(work.view.image, past_.back().image, work.features.image_px, {}, flow_options_);
+  for (const int i : work.all) {
+    if (result.labels.reason[i] != PointReason::kStatic || !flow[i].found) continue;
+    const double moved_px = (flow[i].image_px - work.features.image_px[i]).norm();
+    if (moved_px > options_.paper_flow_px) result.labels.Set(i, PointReason::kFlow, kOnObject);
+  }
+}
+
+void DynamicFilter::ClassifyByMotion(Work& work, const Rigid3d& T_last_now_predicted, DynamicResult& result) {
+  FollowCamera(T_last_now_predicted, work, result);
+  TestMotions(work);
+  MoveTracks(work);
+  if (work.has_detections) {
+    tracks_.TakeDetections(work.detections, work.frame.time_s);
+  }
+  GrowMasks(work);
+  if (options_.unknown_movers && result.camera_motion_reliable) FindMovers(work);
+  GatherEvidence(work);
+  tracks_.UpdateStates(work.frame.time_s);
+  tracks_.DropLost(work.frame.time_s, options_.bridging ? options_.tracks.bridge_s : 0);
+  LabelPoints(work, result);
+  ReadmitPoints(work, result);
+}
+
+// --- Detections
+
+void DynamicFilter::TakeDetections(const Detections& detections, Work& work) {
+  if (last_detections_.valid() && detections.frame <= last_detections_) return;
+  last_detections_ = detections.frame;
+  work.has_detections = true;
+  work.detections = detections.frame == work.frame.id ? Sane(detections.objects, camera_) : CarryToNow(detections, work);
+}
+
+std::vector<Detection> DynamicFilter::CarryToNow(const Detections& detections, const Work& work) const {
+  std::vector<Detection> carried;
+  const auto then = std::find_if(past_.begin(), past_.end(), [&](const PastView& view) { return view.frame == detections.frame; });
+  if (then == past_.end()) return carried;  // too old to be placed
+  for (Detection detection : Sane(detections.objects, camera_)) {
+    if (!tracks_.roles().KindOf(detection.class_id)) continue;
+    detection.box = CarryBox(detection.box, *then, work);
+    carried.push_back(detection);
+  }
+  return Sane(carried, camera_);
+}
+
+// Follows points on the object from the image of the detection to this one.
+ImageBox DynamicFilter::CarryBox(const ImageBox& box, const PastView& then, const Work& work) const {
+  constexpr int kStep = 3;  // cells
+  constexpr size_t kEnough = 6;
+  const ObjectMask mask = MaskInBox(then.depth, box, std::nullopt, options_.mask);
+  std::vector<Eigen::Vector2f> points;
+  for (int r = 0; r < mask.cells.rows; r += kStep) {
+    for (int c = 0; c < mask.cells.cols; c += kStep) {
+      const Eigen::Vector2f px((static_cast<float>(c) + 0.5f) * CoarseDepth::kCellSize, (static_cast<float>(r) + 0.5f) * CoarseDepth::kCellSize);
+      if (mask.cells(r, c) != 0 && box.Contains(px.x(), px.y())) points.push_back(px);
+    }
+  }
+  // Where a track was there then, it says where to look.
+  Eigen::Vector2f guess = CameraShift(camera_, then.T_past_now.Inverse(), Centre(box), mask.depth_m);
+  float best_iou = static_cast<float>(options_.tracks.min_iou);
+  for (const ObjectTrack& track : tracks_.tracks()) {
+    const std::optional<ImageBox> past = track.BoxAt(then.frame);
+    if (!past || IntersectionOverUnion(*past, box) < best_iou) continue;
+    best_iou = IntersectionOverUnion(*past, box);
+    guess = Centre(track.box) - Centre(*past);
+  }
+  std::vector<Eigen::Vector2f> guesses;
+  for (const Eigen::Vector2f& px : points) guesses.emplace_back(px + guess);
+  const std::vector<FlowPoint> flow = FollowPoints(then.image, work.view.image, points, guesses, flow_options_);
+  std::vector<Eigen::Vector2f> shifts;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (flow[i].found) shifts.emplace_back(flow[i].image_px - points[i]);
+  }
+  return Moved(box, MedianOf(shifts, kEnough).value_or(guess));
+}
+
+// --- Motion
+
+void DynamicFilter::FollowCamera(const Rigid3d& T_last_now_predicted, Work& work, DynamicResult& result) {
+  work.flow.assign(work.all.size(), {});
+  if (past_.empty()) return;
+  const std::vector<Eigen::Vector2f> guesses = PredictInPast(camera_, work.features, work.all, T_last_now_predicted);
+  work.flow = FollowPoints(work.view.image, past_.back().image, work.features.image_px, guesses, flow_options_);
+  // Points that were on an object in the last image do not take part.
+  std::vector<int> still;
+  std::vector<FlowPoint> flow;
+  for (const int i : work.all) {
+    const bool on_object = std::any_of(tracks_.tracks().begin(), tracks_.tracks().end(), [&](const ObjectTrack& track) {
+      return track.Removes() && track.mask.Covers(work.flow[i].image_px);
+    });
+    if (on_object) continue;
+    still.push_back(i);
+    flow.push_back(work.flow[i]);
+  }
+  const CameraMotion motion = EstimateCameraMotion(camera_, levels_, work.features, still, flow, T_last_now_predicted,
+                                                   seed_ + static_cast<uint64_t>(work.frame.id.value()));
+  result.camera_motion_reliable = motion.reliable;
+  // What took coordinates of the last camera into the past now takes those of this one.
+  const Rigid3d T_last_now = options_.compensate_camera_motion ? motion.T_past_now : Rigid3d();
+  for (PastView& view : past_) view.T_past_now = view.T_past_now * T_last_now;
+}
+
+const PastView* DynamicFilter::ViewBefore(double time_s) const {
+  const PastView* found = nullptr;
+  for (const PastView& view : past_) {
+    if (view.time_s <= time_s) found = &view;
+  }
+  return found;
+}
+
+void DynamicFilter::TestMotions(Work& work) {
+  work.motion.assign(work.all.size(), PointMotion::kUntested);
+  work.slow_motion = work.motion;
+  if (past_.empty()) return;
+  work.motion = TestMotion(camera_, levels_, work.features, work.all, work.flow, past_.back(), options_.motion);
+  const PastView* before = ViewBefore(work.frame.time_s - options_.motion.look_back_s);
+  if (!before || before == &past_.back()) return;
+  const std::vector<Eigen::Vector2f> guesses = PredictInPast(camera_, work.features, work.all, before->T_past_now);
+  const std::vector<FlowPoint> flow = FollowPoints(work.view.image, before->image, work.features.image_px, guesses, flow_options_);
+  work.slow_motion = TestMotion(camera_, levels_, work.features, work.all, flow, *before, options_.motion);
+}
+
+// --- Objects
+
+void DynamicFilter::MoveTracks(const Work& work) {
+  if (past_.empty()) return;
+  constexpr size_t kEnough = 4;
+  constexpr float kKeep = 0.7f;  // of the former velocity
+  const PastView& last = past_.back();
+  const auto dt_s = static_cast<float>(work.frame.time_s - last.time_s);
+  for (ObjectTrack& track : tracks_.tracks()) {
+    std::vector<Eigen::Vector2f> shifts;
+    for (const int i : work.all) {
+      if (work.flow[i].found && track.mask.Covers(work.flow[i].image_px))
+        shifts.emplace_back(work.features.image_px[i] - work.flow[i].image_px);
+    }
+    const Eigen::Vector2f by_camera = CameraShift(camera_, last.T_past_now.Inverse(), Centre(track.box), track.mask.depth_m);
+    const std::optional<Eigen::Vector2f> seen = MedianOf(shifts, kEnough);
+    const Eigen::Vector2f shift = seen.value_or(by_camera + track.own_velocity_px_s * dt_s);
+    if (seen) track.own_velocity_px_s = kKeep * track.own_velocity_px_s + (1 - kKeep) * (*seen - by_camera) / dt_s;
+    track.box = Moved(track.box, shift);
+  }
+  // An object that has left the image.
+  std::erase_if(tracks_.tracks(), [&](const ObjectTrack& track) {
+    constexpr float kVisible_px = 8;
+    return track.box.x1 < kVisible_px || track.box.y1 < kVisible_px || track.box.x0 > static_cast<float>(camera_.width) - kVisible_px ||
+           track.box.y0 > static_cast<float>(camera_.height) - kVisible_px;
+  });
+}
+
+void DynamicFilter::GrowMasks(const Work& work) {
+  for (ObjectTrack& track : tracks_.tracks()) {
+    if (!options_.depth_split) {
+      track.mask = WholeBox(work.view.depth, track.box);
+      continue;
+    }
+    std::optional<float> expected_m;
+    if (track.mask.depth_m > 0) expected_m = track.mask.depth_m;
+    track.mask = MaskInBox(work.view.depth, track.box, expected_m, options_.mask);
+  }
+}
+
+void DynamicFilter::FindMovers(Work& work) {
+  std::vector<TestedPoint> points;
+  for (const int i : work.all) {
+    if (work.motion[i] == PointMotion::kUntested) continue;
+    const bool on_object = std::any_of(tracks_.tracks().begin(), tracks_.tracks().end(), [&](const ObjectTrack& track) {
+      return track.confirmations > 1 && track.mask.Covers(work.features.image_px[i]);
+    });
+    if (on_object) continue;
+    const bool moves = Moves(work.motion[i]) || (Moves(work.slow_motion[i]) && work.motion[i] != PointMotion::kStatic);
+    points.push_back({work.features.image_px[i], work.features.depth_m[i], moves});
+  }
+  for (const std::vector<int>& cluster : FindMovingClusters(points, options_.tracks)) {
+    std::vector<Eigen::Vector2f> seeds;
+    std::vector<float> depths;
+    ImageBox box{1e9f, 1e9f, -1e9f, -1e9f};
+    for (const int k : cluster) {
+      const Eigen::Vector2f& px = points[k].image_px;
+      seeds.push_back(px);
+      if (points[k].depth_m > 0) depths.push_back(points[k].depth_m);
+      box = {std::min(box.x0, px.x()), std::min(box.y0, px.y()), std::max(box.x1, px.x()), std::max(box.y1, px.y())};
+    }
+    if (depths.size() < 3) continue;
+    std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
+    const float margin_px = 12 + 0.25f * std::max(box.width(), box.height());
+    box = {box.x0 - margin_px, box.y0 - margin_px, box.x1 + margin_px, box.y1 + margin_px};
+    ObjectMask mask = MaskAroundPoints(work.view.depth, seeds, depths[depths.size() / 2], box, options_.mask);
+    const ImageBox around = mask.box;
+    tracks_.TakeMover(around, std::move(mask), work.frame.time_s);
+  }
+}
+
+void DynamicFilter::GatherEvidence(const Work& work) {
+  for (ObjectTrack& track : tracks_.tracks()) {
+    track.evidence = {};
+    for (const int i : work.all) {
+      if (work.motion[i] == PointMotion::kUntested || !track.mask.Covers(work.features.image_px[i])) continue;
+      ++track.evidence.tested;
+      track.evidence.moving += Moves(work.motion[i]) || Moves(work.slow_motion[i]);
+    }
+  }
+}
+
+// --- Labels
+
+void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
+  result.mask = cv::Mat1b(work.view.depth.rows(), work.view.depth.cols(), static_cast<uint8_t>(0));
+  cv::Mat1b settled = result.mask.clone();
+  const double cells = static_cast<double>(result.mask.total());
+  for (const ObjectTrack& track : tracks_.tracks()) {
+    if (track.mask.empty() || track.mask.area > options_.mask.max_image_share * cells) continue;
+    if (track.Removes()) result.mask |= track.mask.cells;
+    if (track.kind == ObjectKind::kKnown && track.state == MotionState::kStatic) settled |= track.mask.cells;
+  }
+  for (const int i : work.all) {
+    const Eigen::Vector2f& px = work.features.image_px[i];
+    const cv::Point cell = work.view.depth.CellOf(px.x(), px.y());
+    if (result.mask(cell) != 0) {
+      result.labels.Set(i, PointReason::kObject, kOnObject);
+    } else if (result.camera_motion_reliable && Moves(work.motion[i])) {
+      const PointReason reason = work.motion[i] == PointMotion::kMovesInDepth ? PointReason::kDepth : PointReason::kFlow;
+      result.labels.Set(i, reason, Moves(work.slow_motion[i]) ? kMovesTwice : kMovesOnce);
+    } else if (settled(cell) != 0) {
+      result.labels.Set(i, PointReason::kSettled, static_cast<float>(options_.tracks.settled_weight));
+    } else if (result.camera_motion_reliable && Moves(work.slow_motion[i])) {
+      result.labels.static_probability[i] = kMovedSlowly;
+    }
+  }
+  if (options_.weights) return;
+  for (float& probability : result.labels.static_probability)
+    probability = probability < options_.min_static_probability ? 0.0f : 1.0f;
+}
+
+// Rather than losing track: those that do not move themselves first, and never those that do.
+void DynamicFilter::ReadmitPoints(const Work& work, DynamicResult& result) const {
+  const PointLabels& labels = result.labels;
+  const auto used = [&](int i) { return labels.static_probability[i] >= options_.min_static_probability; };
+  int missing = options_.min_static_features - static_cast<int>(std::count_if(work.all.begin(), work.all.end(), used));
+  if (missing <= 0) return;
+  for (const PointMotion wanted : {PointMotion::kStatic, PointMotion::kUntested}) {
+    for (const int i : work.all) {
+      if (missing == 0) return;
+      if (used(i) || work.motion[i] != wanted || Moves(work.slow_motion[i])) continue;
+      result.labels.Set(i, PointReason::kReadmitted, kReadmittedWeight);
+      --missing;
+    }
+  }
+}
+
+void DynamicFilter::Describe(const Work& work, DynamicResult& result) const {
+  for (const ObjectTrack& track : tracks_.tracks()) {
+    result.objects.push_back({.id = track.id,
+                              .name = tracks_.roles().NameOf(track.class_id),
+                              .kind = track.kind,
+                              .state = track.state,
+                              .removed = track.Removes(),
+                              .bridged = track.confirmed_s < work.frame.time_s,
+                              .score = track.score,
+                              .box = track.mask.empty() ? track.box : track.mask.box,
+                              .moving_share = track.evidence.MovingShare()});
+  }
+  if (!result.mask.empty())
+    result.mask_share = static_cast<double>(cv::countNonZero(result.mask)) / static_cast<double>(result.mask.total());
+}
+
+void DynamicFilter::Remember(Work& work, const DynamicResult& result) {
+  mask_share_ = result.mask_share;
+  tracks_.RememberBoxes(work.frame.id, static_cast<size_t>(options_.history_frames));
+  past_.push_back(std::move(work.view));
+  if (past_.size() > static_cast<size_t>(options_.history_frames)) past_.pop_front();
+}
+
+double DynamicFilter::FeatureFactor() const {
+  return std::min(options_.max_feature_factor, 1 / std::max(0.1, 1 - mask_share_));
+}
+
+FrameFeatures KeepStatic(const FrameFeatures& features, const PointLabels& labels, double min_static_probability, const Camera& camera) {
+  FrameFeatures kept;
+  for (int i = 0; i < features.size(); ++i) {
+    if (labels.static_probability[i] < min_static_probability) continue;
+    kept.image_px.push_back(features.image_px[i]);
+    kept.uv_px.push_back(features.uv_px[i]);
+    kept.depth_m.push_back(features.depth_m[i]);
+    kept.u_right_px.push_back(features.u_right_px[i]);
+    kept.angle_rad.push_back(features.angle_rad[i]);
+    kept.level.push_back(features.level[i]);
+    kept.static_weight.push_back(labels.static_probability[i]);
+    kept.descriptors.push_back(features.descriptors[i]);
+  }
+  kept.BuildGrid(camera);
+  return kept;
+}
+
+}  // namespace msf

@@ -1,0 +1,103 @@
+// Which points of an image belong to the static world: detector boxes, depth and motion together. Modes and rules: see DynamicOptions.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "dynamic/camera_motion.h"
+#include "dynamic/object_track.h"
+#include "dynamic/point_labels.h"
+#include "util/stage_timer.h"
+
+namespace msf {
+
+// One object as observers see it.
+struct DynamicObject {
+  int id = 0;
+  std::string name;  // of the class; "mover" when it is not known
+  ObjectKind kind = ObjectKind::kUnknown;
+  MotionState state = MotionState::kMoving;
+  bool removed = false;    // its points are not used
+  bool bridged = false;    // not detected in the newest detections, but followed
+  float score = 0;
+  ImageBox box;
+  double moving_share = 0;
+};
+
+// What the filter says about one frame.
+struct DynamicResult {
+  PointLabels labels;                   // per feature given to Classify()
+  std::vector<DynamicObject> objects;
+  cv::Mat1b mask;                       // cells of CoarseDepth: 255 = removed
+  double mask_share = 0;                // of the image
+  int detection_age = -1;               // frames between the newest detections and this frame; -1: none yet
+  bool camera_motion_reliable = false;
+};
+
+// Single-threaded. Frames come in the order of time.
+class DynamicFilter {
+ public:
+  // `class_names`: of the detector whose results Classify() will get; empty without one.
+  static StatusOr<std::unique_ptr<DynamicFilter>> Create(const DynamicOptions& options, const Camera& camera, const ScaleLevels& levels,
+                                                         const std::vector<std::string>& class_names, uint64_t seed);
+
+  // `T_last_now_predicted`: takes coordinates of the camera now to those at the last frame. `detections`: the newest ones, of this frame or
+  // of an earlier one; null when there are none yet. Detections that were given before are recognised by their frame.
+  DynamicResult Classify(const RgbdFrame& frame, const FrameFeatures& features, const Rigid3d& T_last_now_predicted,
+                         const Detections* detections);
+
+  // How many times as many points as usual the next image needs so that the static part keeps its budget.
+  double FeatureFactor() const;
+
+ private:
+  DynamicFilter(const DynamicOptions& options, const Camera& camera, const ScaleLevels& levels, ClassRoles roles, uint64_t seed);
+
+  // The frame on its way through the filter.
+  struct Work {
+    const RgbdFrame& frame;
+    const FrameFeatures& features;
+    std::vector<int> all;                // every feature
+    PastView view;                       // the frame itself, as later frames will need it
+    std::vector<FlowPoint> flow;         // of each feature into the last image
+    std::vector<PointMotion> motion;     // against the last image
+    std::vector<PointMotion> slow_motion;  // against an older one
+    std::vector<Detection> detections;   // in place for this frame
+    bool has_detections = false;
+  };
+
+  void DropInBoxes(const Work& work, DynamicResult& result) const;
+  void DropByRawFlow(const Work& work, DynamicResult& result) const;
+  void ClassifyByMotion(Work& work, const Rigid3d& T_last_now_predicted, DynamicResult& result);
+
+  void TakeDetections(const Detections& detections, Work& work);
+  std::vector<Detection> CarryToNow(const Detections& detections, const Work& work) const;
+  ImageBox CarryBox(const ImageBox& box, const PastView& then, const Work& work) const;
+  void FollowCamera(const Rigid3d& T_last_now_predicted, Work& work, DynamicResult& result);
+  void TestMotions(Work& work);
+  void MoveTracks(const Work& work);
+  void GrowMasks(const Work& work);
+  void FindMovers(Work& work);
+  void GatherEvidence(const Work& work);
+  void LabelPoints(const Work& work, DynamicResult& result) const;
+  void ReadmitPoints(const Work& work, DynamicResult& result) const;
+  void Describe(const Work& work, DynamicResult& result) const;
+  void Remember(Work& work, const DynamicResult& result);
+  const PastView* ViewBefore(double time_s) const;
+
+  const DynamicOptions options_;
+  const Camera camera_;
+  const ScaleLevels levels_;
+  const uint64_t seed_;
+  FlowOptions flow_options_;
+  ObjectTracks tracks_;
+  std::deque<PastView> past_;  // newest last
+  FrameId last_detections_;    // the frame of the newest detections taken
+  double mask_share_ = 0;      // of the last frame
+};
+
+// The features that are static enough to be used, with their static probability as weight, and for each its index in `features`.
+FrameFeatures KeepStatic(const FrameFeatures& features, const PointLabels& labels, double min_static_probability, const Camera& camera);
+
+}  // namespace msf

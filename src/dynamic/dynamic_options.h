@@ -1,0 +1,132 @@
+// Options of the removal of moving things.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "flow/point_flow.h"
+#include "util/status.h"
+
+namespace msf {
+
+// What the two flow-based modes ask of a point.
+struct MotionTestOptions {
+  double min_residual_px = 1.5;
+  double sigmas = 3;
+  double flow_sigma_px = 0.35;
+  double depth_sigma_m = 0.006;
+  double depth_sigma_per_m2 = 0.004;
+  double look_back_s = 0.2;
+
+  template <typename Visitor>
+  void Visit(Visitor& visit) {
+    visit("min_residual_px", min_residual_px, "L: flow left after the camera's motion is taken out, px; less never counts as motion");
+    visit("sigmas", sigmas, "motion must exceed the expected noise this many times");
+    visit("flow_sigma_px", flow_sigma_px, "noise of the flow of a point of pyramid level 0, px");
+    visit("depth_sigma_m", depth_sigma_m, "noise of depth, m, at depth 0 ...");
+    visit("depth_sigma_per_m2", depth_sigma_per_m2, "... and its growth with the square of depth, 1/m");
+    visit("look_back_s", look_back_s, "slow motion is looked for against an image so much older, s");
+  }
+};
+
+struct ObjectMaskOptions {
+  double depth_band_m = 0.5;
+  double max_step_share = 0.03;
+  double max_step_m = 0.02;
+  double box_margin = 0.1;
+  int grow_px = 4;
+  int grow_without_depth_px = 12;
+  double min_depth_share = 0.15;
+  double max_image_share = 0.8;
+
+  template <typename Visitor>
+  void Visit(Visitor& visit) {
+    visit("depth_band_m", depth_band_m, "an object reaches so far before and behind its typical depth, m");
+    visit("max_step_share", max_step_share, "neighbouring cells of an object differ in depth by at most this share of it ...");
+    visit("max_step_m", max_step_m, "... plus this, m");
+    visit("box_margin", box_margin, "an object may reach beyond its box by this share of the box");
+    visit("grow_px", grow_px, "the mask is grown by so much, px");
+    visit("grow_without_depth_px", grow_without_depth_px, "and so far over pixels without depth, px");
+    visit("min_depth_share", min_depth_share, "with less valid depth inside a box the whole box is the mask");
+    visit("max_image_share", max_image_share, "larger masks are distrusted");
+  }
+};
+
+struct ObjectTrackOptions {
+  double min_iou = 0.25;
+  double bridge_s = 0.7;
+  double start_score = 0.25;
+  double potential_score = 0.4;
+  double continue_score = 0.1;
+  double settle_s = 3;
+  double moving_share = 0.25;
+  double settled_share = 0.08;
+  int min_tested_points = 5;
+  double settled_weight = 0.35;
+  int min_cluster_points = 6;
+  double cluster_px = 40;
+
+  template <typename Visitor>
+  void Visit(Visitor& visit) {
+    visit("min_iou", min_iou, "overlap with which a detection continues a track");
+    visit("bridge_s", bridge_s, "an object that is detected no more is followed for so long, s");
+    visit("start_score", start_score, "score with which a known dynamic class starts a track");
+    visit("potential_score", potential_score, "the same for a potentially dynamic class");
+    visit("continue_score", continue_score, "score with which a detection continues a track");
+    visit("settle_s", settle_s, "an object that has not moved for so long counts as static, s");
+    visit("moving_share", moving_share, "share of its points that fail the motion test with which an object moves");
+    visit("settled_share", settled_share, "share below which it rests");
+    visit("min_tested_points", min_tested_points, "points without which there is no verdict on an object");
+    visit("settled_weight", settled_weight, "static probability of the points of a known dynamic object that rests");
+    visit("min_cluster_points", min_cluster_points, "moving points that make an object of unknown class");
+    visit("cluster_px", cluster_px, "distance between neighbouring points of such an object, px");
+  }
+};
+
+struct DynamicOptions {
+  std::string mode = "full";
+  std::vector<std::string> known_classes = {"person", "bird",  "cat",     "dog",   "horse", "sheep",      "cow",
+                                            "elephant", "bear", "bicycle", "car",  "motorcycle", "bus", "train", "truck"};
+  std::vector<std::string> potential_classes = {"chair", "couch", "potted plant", "bottle", "tv",  "laptop", "book",
+                                                "cup",   "suitcase", "backpack", "handbag", "umbrella", "sports ball"};
+  double paper_flow_px = 1.5;
+  int paper_window_px = 5;
+  bool depth_split = true;
+  bool bridging = true;
+  bool compensate_camera_motion = true;
+  bool weights = true;
+  bool unknown_movers = true;
+  int min_static_features = 100;
+  double min_static_probability = 0.3;
+  double max_feature_factor = 1.6;
+  int history_frames = 16;
+  MotionTestOptions motion;
+  ObjectMaskOptions mask;
+  ObjectTrackOptions tracks;
+  FlowOptions flow;
+
+  template <typename Visitor>
+  void Visit(Visitor& visit) {
+    visit("mode", mode, "off; boxes: drop what is in a box; paper: boxes, then raw flow above paper_flow_px; full");
+    visit("known_classes", known_classes, "classes that move by themselves");
+    visit("potential_classes", potential_classes, "classes that people move");
+    visit("paper_flow_px", paper_flow_px, "mode paper: L, largest flow of a static point, px");
+    visit("paper_window_px", paper_window_px, "mode paper: side of the flow's window, px");
+    visit("depth_split", depth_split, "inside a box only the near cluster is the object");
+    visit("bridging", bridging, "follow objects through missed and late detections");
+    visit("compensate_camera_motion", compensate_camera_motion, "test the flow that is left after the camera's motion");
+    visit("weights", weights, "static probability of points as weight; else yes or no");
+    visit("unknown_movers", unknown_movers, "moving clusters outside all boxes are objects, too");
+    visit("min_static_features", min_static_features, "with fewer static points the least suspicious others are readmitted");
+    visit("min_static_probability", min_static_probability, "points less likely static are not used");
+    visit("max_feature_factor", max_feature_factor, "so many times the points are extracted at most where masks cover the image");
+    visit("history_frames", history_frames, "images kept, to place late detections");
+    visit("motion", motion, "");
+    visit("mask", mask, "");
+    visit("tracks", tracks, "");
+    visit("flow", flow, "");
+  }
+  Status Check() const;
+};
+
+}  // namespace msf

@@ -1,0 +1,39 @@
+// Which part of a box is the object: the near cluster of depths that hangs together.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "detection/detection.h"
+#include "dynamic/coarse_depth.h"
+#include "dynamic/dynamic_options.h"
+
+namespace msf {
+
+struct ObjectMask {
+  cv::Mat1b cells;    // like CoarseDepth: 255 = object
+  float depth_m = 0;  // typical depth, 0 = not known
+  int area = 0;       // cells
+  ImageBox box;       // around the cells, px
+
+  bool empty() const { return area == 0; }
+  bool Covers(const Eigen::Vector2f& image_px) const {
+    if (empty()) return false;
+    const int r = static_cast<int>(image_px.y()) / CoarseDepth::kCellSize, c = static_cast<int>(image_px.x()) / CoarseDepth::kCellSize;
+    return r >= 0 && c >= 0 && r < cells.rows && c < cells.cols && cells(r, c) != 0;
+  }
+};
+
+// The object in `box` (pixels). `expected_depth_m`: where it was a moment ago, if that is known. Without depth
+// in the box the box is the mask.
+ObjectMask MaskInBox(const CoarseDepth& depth, const ImageBox& box, std::optional<float> expected_depth_m,
+                     const ObjectMaskOptions& options);
+
+// All of `box`.
+ObjectMask WholeBox(const CoarseDepth& depth, const ImageBox& box);
+
+// The object around some of its points (pixels), whose typical depth is known, within `box`.
+ObjectMask MaskAroundPoints(const CoarseDepth& depth, const std::vector<Eigen::Vector2f>& points_px, float depth_m,
+                            const ImageBox& box, const ObjectMaskOptions& options);
+
+}  // namespace msf

@@ -1,0 +1,75 @@
+// Objects that move or may move, followed from image to image.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dynamic/class_roles.h"
+#include "dynamic/object_mask.h"
+
+namespace msf {
+
+enum class MotionState { kMoving, kUncertain, kStatic };
+const char* ToString(MotionState state);
+
+// What the motion test says about the points of an object.
+struct MotionEvidence {
+  int tested = 0;
+  int moving = 0;
+  double MovingShare() const { return tested > 0 ? static_cast<double>(moving) / tested : 0; }
+};
+
+struct ObjectTrack {
+  int id = 0;
+  int class_id = -1;  // of the detector; -1: a mover of unknown class
+  ObjectKind kind = ObjectKind::kUnknown;
+  float score = 0;  // of the last detection
+  ImageBox box;     // in the present image, px
+  ObjectMask mask;
+  MotionState state = MotionState::kMoving;
+  Eigen::Vector2f own_velocity_px_s = Eigen::Vector2f::Zero();  // beyond what the camera's motion does to it
+  double confirmed_s = 0;      // last detection, or last time its motion was seen
+  double resting_since_s = 0;
+  int confirmations = 0;
+  MotionEvidence evidence;
+  std::deque<std::pair<FrameId, ImageBox>> past_boxes;  // newest last
+
+  // Whether its points are to be removed; a mover of unknown class must have been seen twice.
+  bool Removes() const;
+  std::optional<ImageBox> BoxAt(FrameId frame) const;
+};
+
+// Associates detections with tracks and keeps each track's state of motion.
+class ObjectTracks {
+ public:
+  ObjectTracks(const ObjectTrackOptions& options, ClassRoles roles) : options_(options), roles_(std::move(roles)) {}
+
+  const std::vector<ObjectTrack>& tracks() const { return tracks_; }
+  std::vector<ObjectTrack>& tracks() { return tracks_; }
+  const ClassRoles& roles() const { return roles_; }
+
+  // Boxes in pixels of the present image; best first. A box continues the track of its kind that it overlaps most; what is left starts
+  // new tracks where the score allows it.
+  void TakeDetections(const std::vector<Detection>& detections, double time_s);
+  // A cluster of moving points outside all masks: confirms the mover there or starts one.
+  void TakeMover(const ImageBox& box, ObjectMask mask, double time_s);
+  // The state of motion after `track.evidence` was filled.
+  void UpdateStates(double time_s);
+  // Forgets tracks that nothing has confirmed for `bridge_s`.
+  void DropLost(double time_s, double bridge_s);
+  void RememberBoxes(FrameId frame, size_t max_history);
+
+ private:
+  ObjectTrack* FindMatch(const Detection& detection, ObjectKind kind, const std::vector<uint8_t>& taken);
+  void UpdateState(ObjectTrack& track, double time_s) const;
+
+  ObjectTrackOptions options_;
+  ClassRoles roles_;
+  std::vector<ObjectTrack> tracks_;
+  int next_id_ = 0;
+};
+
+}  // namespace msf

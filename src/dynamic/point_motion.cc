@@ -1,0 +1,100 @@
+#include "dynamic/point_motion.h"
+
+#include <cmath>
+
+namespace msf {
+namespace {
+
+// A point without depth lies somewhere on the line between these distances.
+constexpr double kNearest_m = 0.4;
+constexpr double kFarthest_m = 50;
+
+double DepthSigma(double depth_m, const MotionTestOptions& options) {
+  return options.depth_sigma_m + options.depth_sigma_per_m2 * depth_m * depth_m;
+}
+
+// Distance of `p` to the segment between `a` and `b`.
+double DistanceToSegment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  const Eigen::Vector2d along = b - a;
+  const double length2 = along.squaredNorm();
+  const double t = length2 > 0 ? std::clamp((p - a).dot(along) / length2, 0.0, 1.0) : 0.0;
+  return (p - a - t * along).norm();
+}
+
+// Whether depth near `image_px` agrees with `expected_m` anywhere: at an edge either side may be right.
+enum class DepthVerdict { kNone, kAgrees, kDiffers };
+DepthVerdict CompareDepth(const CoarseDepth& depth, const Eigen::Vector2f& image_px, double expected_m, double tolerance_m) {
+  const cv::Point cell = depth.CellOf(image_px.x(), image_px.y());
+  int valid = 0;
+  for (int r = std::max(0, cell.y - 1); r <= std::min(depth.rows() - 1, cell.y + 1); ++r) {
+    for (int c = std::max(0, cell.x - 1); c <= std::min(depth.cols() - 1, cell.x + 1); ++c) {
+      const float d = depth.metres()(r, c);
+      if (d <= 0) continue;
+      ++valid;
+      if (std::abs(d - expected_m) <= tolerance_m) return DepthVerdict::kAgrees;
+    }
+  }
+  constexpr int kEnough = 5;
+  return valid >= kEnough ? DepthVerdict::kDiffers : DepthVerdict::kNone;
+}
+
+PointMotion TestWithoutDepth(const Camera& camera, const Eigen::Vector2d& uv_px, const Eigen::Vector2d& landed_px,
+                             const Rigid3d& T_past_now, double tolerance_px) {
+  const Eigen::Vector3d near = T_past_now * camera.Unproject(uv_px, kNearest_m);
+  const Eigen::Vector3d far = T_past_now * camera.Unproject(uv_px, kFarthest_m);
+  if (near.z() <= 0 || far.z() <= 0) return PointMotion::kUntested;
+  const double distance_px = DistanceToSegment(landed_px, camera.Project(near), camera.Project(far));
+  return distance_px > tolerance_px ? PointMotion::kMovesSideways : PointMotion::kStatic;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector2f> PredictInPast(const Camera& camera, const FrameFeatures& features, std::span<const int> which,
+                                           const Rigid3d& T_past_now) {
+  std::vector<Eigen::Vector2f> predicted;
+  predicted.reserve(which.size());
+  for (const int i : which) {
+    const double depth_m = features.HasDepth(i) ? features.depth_m[i] : kFarthest_m;
+    const Eigen::Vector3d p = T_past_now * camera.Unproject(features.uv_px[i].cast<double>(), depth_m);
+    predicted.push_back(p.z() > 0 ? camera.Distort(camera.Project(p)).cast<float>().eval() : features.image_px[i]);
+  }
+  return predicted;
+}
+
+std::vector<PointMotion> TestMotion(const Camera& camera, const ScaleLevels& levels, const FrameFeatures& features,
+                                    std::span<const int> which, std::span<const FlowPoint> flow, const PastView& past,
+                                    const MotionTestOptions& options) {
+  std::vector<PointMotion> verdicts(which.size(), PointMotion::kUntested);
+  for (size_t k = 0; k < which.size(); ++k) {
+    if (!flow[k].found) continue;
+    const int i = which[k];
+    const Eigen::Vector2d landed_px = camera.Undistort(flow[k].image_px.cast<double>());
+    const Eigen::Vector2d uv_px = features.uv_px[i].cast<double>();
+    const double flow_sigma_px = options.flow_sigma_px * levels.scale(features.level[i]);
+    if (!features.HasDepth(i)) {
+      const double tolerance_px = std::max(options.min_residual_px, options.sigmas * flow_sigma_px);
+      verdicts[k] = TestWithoutDepth(camera, uv_px, landed_px, past.T_past_now, tolerance_px);
+      continue;
+    }
+    const double depth_m = features.depth_m[i];
+    const Eigen::Vector3d p = past.T_past_now * camera.Unproject(uv_px, depth_m);
+    if (p.z() <= 0) continue;
+    // How far an error of depth moves the prediction: by the parallax, in proportion.
+    const double parallax_px = (camera.Project(past.T_past_now.rotation() * camera.Unproject(uv_px, depth_m)) - camera.Project(p)).norm();
+    const double depth_sigma_px = parallax_px * DepthSigma(depth_m, options) / depth_m;
+    const double tolerance_px = std::max(options.min_residual_px, options.sigmas * std::hypot(flow_sigma_px, depth_sigma_px));
+    const double residual_px = (landed_px - camera.Project(p)).norm();
+    const double depth_tolerance_m = 2 * options.sigmas * DepthSigma(p.z(), options);
+    const DepthVerdict depth = CompareDepth(past.depth, flow[k].image_px, p.z(), depth_tolerance_m);
+    if (residual_px > tolerance_px) {
+      verdicts[k] = PointMotion::kMovesSideways;
+    } else if (depth == DepthVerdict::kDiffers) {
+      verdicts[k] = PointMotion::kMovesInDepth;
+    } else {
+      verdicts[k] = PointMotion::kStatic;
+    }
+  }
+  return verdicts;
+}
+
+}  // namespace msf

@@ -1,0 +1,42 @@
+// Does a point move by itself? Its flow and depth against what the camera's motion alone would do to it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "dynamic/coarse_depth.h"
+#include "dynamic/dynamic_options.h"
+#include "feature/frame_features.h"
+#include "feature/scale_levels.h"
+#include "flow/point_flow.h"
+#include "geometry/rigid3d.h"
+
+namespace msf {
+
+// An older image, as the tests need it.
+struct PastView {
+  FrameId frame;
+  double time_s = 0;
+  FlowImage image;
+  CoarseDepth depth;
+  Rigid3d T_past_now;  // takes coordinates of the camera now to those of then
+};
+
+enum class PointMotion : uint8_t {
+  kUntested,       // not found in the other image, or no verdict possible
+  kStatic,
+  kMovesSideways,  // its flow disagrees
+  kMovesInDepth,   // its depth does
+};
+inline bool Moves(PointMotion motion) { return motion == PointMotion::kMovesSideways || motion == PointMotion::kMovesInDepth; }
+
+// Where features of this frame would be in the past image if they stood still; for those without depth: at infinity.
+std::vector<Eigen::Vector2f> PredictInPast(const Camera& camera, const FrameFeatures& features, std::span<const int> which,
+                                           const Rigid3d& T_past_now);
+
+// Verdicts on the features `which`, whose places in the past image are `flow` (same order).
+std::vector<PointMotion> TestMotion(const Camera& camera, const ScaleLevels& levels, const FrameFeatures& features,
+                                    std::span<const int> which, std::span<const FlowPoint> flow, const PastView& past,
+                                    const MotionTestOptions& options);
+
+}  // namespace msf

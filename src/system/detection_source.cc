@@ -1,0 +1,89 @@
+#include "system/detection_source.h"
+
+#include <chrono>
+#include <exception>
+
+namespace msf {
+
+Status DetectionScheduleOptions::Check() const {
+  if (every < 1 || delay_frames < 0) return Status::Error("detection: every must be at least 1, delay_frames not negative");
+  return Status::Ok();
+}
+
+DetectionSource::DetectionSource(std::unique_ptr<Detector> detector, const DetectionScheduleOptions& options, bool threaded)
+    : detector_(std::move(detector)), options_(options) {
+  if (threaded) thread_ = std::thread([this] { Run(); });
+}
+
+DetectionSource::~DetectionSource() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+    changed_.notify_all();
+  }
+  if (thread_.joinable()) thread_.join();
+}
+
+void DetectionSource::Offer(const RgbdFramePtr& frame) {
+  if (num_offered_++ % options_.every != 0) return;
+  if (!thread_.joinable()) return Detect(*frame);
+  const std::lock_guard lock(mutex_);
+  mailbox_ = frame;
+  changed_.notify_all();
+}
+
+std::shared_ptr<const Detections> DetectionSource::Newest(FrameId now) const {
+  const std::lock_guard lock(mutex_);
+  for (auto result = results_.rbegin(); result != results_.rend(); ++result) {
+    if ((*result)->frame.value() + options_.delay_frames <= now.value()) return *result;
+  }
+  return nullptr;
+}
+
+void DetectionSource::WaitUntilTaken() const {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return closed_ || !mailbox_; });
+}
+
+DetectionStatistics DetectionSource::statistics() const {
+  const std::lock_guard lock(mutex_);
+  return statistics_;
+}
+
+void DetectionSource::Run() {
+  while (true) {
+    RgbdFramePtr frame;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [&] { return closed_ || mailbox_; });
+      if (closed_) return;
+      frame = std::move(mailbox_);
+      mailbox_ = nullptr;
+      changed_.notify_all();
+    }
+    Detect(*frame);
+  }
+}
+
+void DetectionSource::Detect(const RgbdFrame& frame) {
+  const auto start = std::chrono::steady_clock::now();
+  StatusOr<Detections> found = Status::Error("");
+  try {
+    found = detector_->Detect(frame);
+  } catch (const std::exception& failure) {  // a user's detector may throw anything; tracking goes on without it
+    found = Status::Error(failure.what());
+  }
+  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+  const std::lock_guard lock(mutex_);
+  DetectionStatistics& s = statistics_;
+  ++s.num_detected;
+  s.mean_ms += (elapsed.count() - s.mean_ms) / static_cast<double>(s.num_detected);
+  if (!found.ok()) {
+    if (s.num_failed++ == 0) s.first_failure = "frame " + std::to_string(frame.id.value()) + ": " + found.message();
+    return;
+  }
+  results_.push_back(std::make_shared<const Detections>(*std::move(found)));
+  if (results_.size() > static_cast<size_t>(options_.delay_frames) + 2) results_.pop_front();
+}
+
+}  // namespace msf

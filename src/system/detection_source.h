@@ -1,0 +1,71 @@
+// Where detections come from: a detector beside tracking, which never waits for it, or inline.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "detection/detector.h"
+#include "sensor/rgbd_frame.h"
+
+namespace msf {
+
+// Which frames are detected and when results are handed out; other values than the defaults serve experiments.
+struct DetectionScheduleOptions {
+  int every = 1;
+  int delay_frames = 0;
+
+  template <typename Visitor>
+  void Visit(Visitor& visit) {
+    visit("every", every, "only every so-manieth frame is given to the detector");
+    visit("delay_frames", delay_frames, "results are held back for so many frames");
+  }
+  Status Check() const;
+};
+
+struct DetectionStatistics {
+  int64_t num_detected = 0;  // frames that went through the detector
+  int64_t num_failed = 0;    // of them, those on which it failed
+  std::string first_failure;
+  double mean_ms = 0;        // per frame, wall time
+};
+
+// A failing detector (an error or an exception) gives no detections for that frame; it is counted, and the next frame is tried again.
+class DetectionSource {
+ public:
+  // `threaded`: detection in a thread of its own behind a mailbox that holds the newest frame only; else within Offer().
+  DetectionSource(std::unique_ptr<Detector> detector, const DetectionScheduleOptions& options, bool threaded);
+  ~DetectionSource();
+  DetectionSource(const DetectionSource&) = delete;
+  DetectionSource& operator=(const DetectionSource&) = delete;
+
+  // Gives the present frame to the detector, in place of one that still waits.
+  void Offer(const RgbdFramePtr& frame);
+  // The newest detections; null when there are none yet. They carry the frame that they belong to.
+  std::shared_ptr<const Detections> Newest(FrameId now) const;
+  // Waits until the mailbox is empty: for recordings, which come faster than a camera's images.
+  void WaitUntilTaken() const;
+  DetectionStatistics statistics() const;
+
+ private:
+  void Run();
+  void Detect(const RgbdFrame& frame);
+
+  const std::unique_ptr<Detector> detector_;
+  const DetectionScheduleOptions options_;
+  int64_t num_offered_ = 0;
+
+  mutable std::mutex mutex_;  // guards all below
+  mutable std::condition_variable changed_;
+  RgbdFramePtr mailbox_;
+  bool closed_ = false;
+  std::deque<std::shared_ptr<const Detections>> results_;  // newest last
+  DetectionStatistics statistics_;
+  std::thread thread_;  // last: it starts when all else is ready
+};
+
+}  // namespace msf
