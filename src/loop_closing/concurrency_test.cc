@@ -4,7 +4,7 @@
 
 #include "loop_closing/full_bundle.h"
 #include "loop_closing/loop_closer.h"
-#include "loop_closing/test_world.h"
+#include "map/test_world.h"
 #include "util/bounded_queue.h"
 
 namespace msf {

@@ -4,7 +4,7 @@
 
 #include "loop_closing/map_bundle.h"
 #include "loop_closing/map_pose_graph.h"
-#include "loop_closing/test_world.h"
+#include "map/test_world.h"
 
 namespace msf {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "loop_closing/test_world.h"
+#include "map/test_world.h"
 
 namespace msf {
 namespace {

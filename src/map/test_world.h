@@ -1,5 +1,5 @@
-// A ring of landmarks seen from a circle inside it, for the tests of loop closing: maps with known
-// truth and drift, without images.
+// A ring of landmarks seen from a circle inside it, for the tests of mapping and loop closing: maps
+// with known truth and drift, without images.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@ class TestWorld {
     for (int i = 0; i < num_landmarks; ++i) {
       const double angle_rad = Uniform(-std::numbers::pi, std::numbers::pi);
       const double radius_m = Uniform(4.5, 6.0);
-      Landmark landmark;
+      WorldPoint landmark;
       landmark.p_w = {radius_m * std::sin(angle_rad), Uniform(-1.5, 1.5),
                       radius_m * std::cos(angle_rad)};
       for (uint64_t& bits : landmark.descriptor) bits = random_();
@@ -69,30 +69,31 @@ class TestWorld {
     return view;
   }
 
-  // Adds a keyframe that is at T_cw_true but believed at T_cw to the active map. It observes the
-  // points of landmarks that the map has made within the last few keyframes, and makes new ones.
+  // Adds a keyframe without points that is at T_cw_true but believed at T_cw to the active map.
+  KeyFrameId AddBareKeyFrame(const Rigid3d& T_cw_true, const Rigid3d& T_cw, Map& map) {
+    const KeyFrameId id = Insert(T_cw_true, T_cw, map);
+    map.UpdateConnections(id);
+    return id;
+  }
+
+  // The same with points: it observes those of landmarks that the map has made within the last few
+  // keyframes, and makes new ones.
   KeyFrameId AddKeyFrame(const Rigid3d& T_cw_true, const Rigid3d& T_cw, Map& map) {
-    const View view = Look(T_cw_true);
-    KeyFrame keyframe;
-    keyframe.T_cw = T_cw;
-    keyframe.features = view.features;
-    keyframe.words = view.words;
-    keyframe.colors_bgr.resize(view.landmarks.size());
-    const KeyFrameId id = map.AddKeyFrame(keyframe);
+    const KeyFrameId id = Insert(T_cw_true, T_cw, map);
+    const FrameFeatures& features = *map.FindKeyFrame(id)->features;
     const Rigid3d T_wc = T_cw.Inverse();
-    for (int i = 0; i < view.features->size(); ++i) {
-      MapPointId& known = point_of_[view.landmarks[i]];
+    for (int i = 0; i < features.size(); ++i) {
+      MapPointId& known = point_of_[Landmark(id, i)];
       const MapPoint* point = map.FindPoint(map.Resolve(known));
       if (point && point->map_id == map.active_map() &&
           id.value() - point->first_keyframe.value() <= kMemory) {
         map.AddObservation(point->id, id, i);
         map.UpdateNormalAndRange(point->id);
       } else {
-        known = map.AddPoint(T_wc * view.features->PointInCamera(i, *camera_), id, i);
+        known = map.AddPoint(T_wc * features.PointInCamera(i, *camera_), id, i);
       }
     }
     map.UpdateConnections(id);
-    truth_[id] = T_cw_true;
     return id;
   }
 
@@ -112,6 +113,9 @@ class TestWorld {
   }
 
   const Rigid3d& Truth(KeyFrameId id) const { return truth_.at(id); }
+  // Which landmark a feature of a keyframe shows, and where that is.
+  int Landmark(KeyFrameId id, int feature) const { return shown_.at(id)[feature]; }
+  const Eigen::Vector3d& Place(int landmark) const { return landmarks_[landmark].p_w; }
 
   // Root mean square distance of the keyframes' places from the truth, m, after moving the first
   // one onto it.
@@ -141,13 +145,25 @@ class TestWorld {
 
  private:
   static constexpr int kMemory = 4;  // keyframes
-  struct Landmark {
+  struct WorldPoint {
     Eigen::Vector3d p_w;
     Descriptor descriptor;
     double max_distance_m;
   };
 
-  void AddFeature(const Landmark& landmark, const Eigen::Vector2d& uv_px,
+  KeyFrameId Insert(const Rigid3d& T_cw_true, const Rigid3d& T_cw, Map& map) {
+    const View view = Look(T_cw_true);
+    KeyFrame keyframe;
+    keyframe.T_cw = T_cw;
+    keyframe.features = view.features;
+    keyframe.words = view.words;
+    keyframe.colors_bgr.resize(view.landmarks.size());
+    const KeyFrameId id = map.AddKeyFrame(keyframe);
+    truth_[id] = T_cw_true;
+    shown_[id] = view.landmarks;
+    return id;
+  }
+  void AddFeature(const WorldPoint& landmark, const Eigen::Vector2d& uv_px,
                   const Eigen::Vector3d& p_c, FrameFeatures& features) {
     const double disparity_px = camera_->bf / p_c.z() + Normal(0.2);
     features.uv_px.push_back(uv_px.cast<float>());
@@ -173,9 +189,10 @@ class TestWorld {
   const std::shared_ptr<const Camera> camera_;
   const ScaleLevels levels_{8, 1.2};
   std::mt19937_64 random_;
-  std::vector<Landmark> landmarks_;
+  std::vector<WorldPoint> landmarks_;
   std::map<int, MapPointId> point_of_;
   std::map<KeyFrameId, Rigid3d> truth_;
+  std::map<KeyFrameId, std::vector<int>> shown_;
 };
 
 }  // namespace msf

@@ -24,18 +24,6 @@ class Numbering {
   std::vector<Id> ids_;
 };
 
-std::vector<MapPointId> PointsSeenBy(const Map& map, const std::vector<KeyFrameId>& keyframes) {
-  std::vector<MapPointId> points;
-  for (const KeyFrameId id : keyframes) {
-    for (const MapPointId point : map.FindKeyFrame(id)->points) {
-      if (point.valid()) points.push_back(point);
-    }
-  }
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  return points;
-}
-
 // Without a fixed pose the whole could drift: the oldest stays.
 void FixGauge(const std::vector<KeyFrameId>& keyframes, std::vector<BundlePose>& poses) {
   if (std::any_of(poses.begin(), poses.end(), [](const BundlePose& pose) { return pose.fixed; }))
@@ -59,7 +47,7 @@ LocalBundle CopyLocalBundle(const MappingOptions& options, const NoiseOptions& n
     return index;
   };
   for (const KeyFrameId id : moving) add_pose(id, !map.tree().Parent(id).valid());
-  bundle.points = PointsSeenBy(map, moving);
+  bundle.points = map.PointsSeenBy(moving);
   for (size_t p = 0; p < bundle.points.size(); ++p) {
     const MapPoint& point = *map.FindPoint(bundle.points[p]);
     bundle.problem.points.push_back({point.p_w});

@@ -7,7 +7,11 @@ namespace {
 
 // A frame that is tied to the map as well as its reference keyframe.
 KeyFrameEvidence WellTracked() {
-  return {.since_last_s = 0.2, .inliers = 300, .reference_points = 320, .tracked_close = 250, .untracked_close = 20};
+  return {.since_last_s = 0.2,
+          .inliers = 300,
+          .reference_points = 320,
+          .tracked_close = 250,
+          .untracked_close = 20};
 }
 
 TEST(KeyFramePolicy, WellTrackedFrameIsNone) {

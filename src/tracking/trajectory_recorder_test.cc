@@ -16,7 +16,8 @@ Rigid3d Shift(double x_m) { return {Eigen::Quaterniond::Identity(), Eigen::Vecto
 
 class TrajectoryRecorderTest : public testing::Test {
  protected:
-  TrajectoryRecorderTest() : map_(std::make_shared<const Camera>(*Camera::Preset("simulated")), ScaleLevels(8, 1.2)) {
+  TrajectoryRecorderTest()
+      : map_(std::make_shared<const Camera>(*Camera::Preset("simulated")), ScaleLevels(8, 1.2)) {
     map_.StartNewMap();
   }
   KeyFrameId Add(const Rigid3d& T_cw) {
