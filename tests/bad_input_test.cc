@@ -194,7 +194,9 @@ TEST_F(BadInputTest, AnInterruptedRunWritesWhatItHas) {
   std::vector<std::string> lines;
   for (int i = 0; i < kFrames; ++i) {
     const std::string time_s = std::to_string(1000 + 2 * i);
-    lines.push_back(time_s + " " + Word(i, 1) + " " + time_s + " " + Word(i, 3));
+    std::ostringstream line;
+    line << time_s << ' ' << Word(i, 1) << ' ' << time_s << ' ' << Word(i, 3);
+    lines.push_back(line.str());
   }
   WriteList(lines);
   const Outcome outcome = RunShell("timeout --preserve-status -s INT 5 " MSF_PROGRAM " run " +

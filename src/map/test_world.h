@@ -103,11 +103,13 @@ class TestWorld {
                                const Vector6d& drift, const Rigid3d& T_cw_start, Map& map) {
     std::vector<KeyFrameId> ids;
     Rigid3d T_cw = T_cw_start, T_cw_true = PoseOnCircle(from_rad);
-    for (double angle_rad = from_rad; angle_rad <= to_rad; angle_rad += step_rad) {
+    double angle_rad = from_rad;
+    while (angle_rad <= to_rad) {
       const Rigid3d T_cw_next = PoseOnCircle(angle_rad);
       if (!ids.empty()) T_cw = Rigid3d::Exp(drift) * (T_cw_next * T_cw_true.Inverse()) * T_cw;
       T_cw_true = T_cw_next;
       ids.push_back(AddKeyFrame(T_cw_true, T_cw, map));
+      angle_rad += step_rad;
     }
     return ids;
   }
@@ -146,9 +148,9 @@ class TestWorld {
  private:
   static constexpr int kMemory = 4;  // keyframes
   struct WorldPoint {
-    Eigen::Vector3d p_w;
-    Descriptor descriptor;
-    double max_distance_m;
+    Eigen::Vector3d p_w = Eigen::Vector3d::Zero();
+    Descriptor descriptor{};
+    double max_distance_m = 0;
   };
 
   KeyFrameId Insert(const Rigid3d& T_cw_true, const Rigid3d& T_cw, Map& map) {

@@ -51,6 +51,7 @@ TEST_F(PointFusionTest, OfTwoPointsTheBetterObservedStays) {
   const FrameFeatures& features = *map_.FindKeyFrame(second)->features;
   const Rigid3d T_wc = map_.PoseOf(second).Inverse();
   std::vector<MapPointId> theirs;
+  theirs.reserve(features.size());
   for (int i = 0; i < features.size(); ++i) {
     theirs.push_back(map_.AddPoint(T_wc * features.PointInCamera(i, map_.camera()), second, i));
   }

@@ -36,9 +36,9 @@ class [[nodiscard]] Status {
 template <typename T>
 class [[nodiscard]] StatusOr {
  public:
-  StatusOr(T value)
-      : value_(std::move(value)) {
-  }  // NOLINT(google-explicit-constructor): reads as `return value;`
+  // Implicit: reads as `return value;`
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  StatusOr(T value) : value_(std::move(value)) {}
   StatusOr(Status status) : status_(std::move(status)) {  // NOLINT(google-explicit-constructor)
     MSF_CHECK(!status_.ok(), "StatusOr needs a value or an error");
   }

@@ -15,7 +15,7 @@ class StrongId {
 
   constexpr bool valid() const { return value_ >= 0; }
   constexpr int64_t value() const { return value_; }
-  friend constexpr auto operator<=>(StrongId, StrongId) = default;
+  friend constexpr auto operator<=>(StrongId, StrongId) = default;  // NOLINT(modernize-use-nullptr)
 
  private:
   int64_t value_ = -1;
