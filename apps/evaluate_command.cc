@@ -1,15 +1,18 @@
 // msf-slam evaluate: how far estimated trajectories are from the truth.
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "apps/command.h"
 #include "evaluation/evaluation.h"
 #include "evaluation/evaluation_report.h"
+#include "evaluation/mask_score.h"
 #include "evaluation/trajectory_plot.h"
 #include "io/tum_dataset.h"
 #include "util/atomic_file.h"
@@ -27,6 +30,8 @@ struct EvaluateArguments {
   fs::path plot_folder;
   size_t num_frames = 0;
   fs::path dataset_folder;
+  fs::path mask_folder;
+  std::vector<fs::path> label_files;
 };
 
 std::optional<size_t> NumInputFrames(const EvaluateArguments& arguments) {
@@ -35,14 +40,22 @@ std::optional<size_t> NumInputFrames(const EvaluateArguments& arguments) {
   return Require(CountFrames(arguments.dataset_folder));
 }
 
-// Short names that tell the estimates apart: file names, or whole paths where those repeat.
+// Short names that tell the estimates apart: file names, those of their folders where files are
+// called the same, or whole paths.
 std::vector<std::string> NamesOf(const std::vector<fs::path>& files) {
-  std::vector<std::string> names;
-  for (const fs::path& file : files) {
-    size_t same = 0;
-    for (const fs::path& other : files) same += other.stem() == file.stem();
-    names.push_back(same == 1 ? file.stem().string() : file.string());
-  }
+  const auto name_by = [&](const std::function<std::string(const fs::path&)>& name) {
+    std::vector<std::string> names;
+    for (const fs::path& file : files) names.push_back(name(file));
+    return names;
+  };
+  const auto differ = [](const std::vector<std::string>& names) {
+    return std::set<std::string>(names.begin(), names.end()).size() == names.size();
+  };
+  std::vector<std::string> names =
+      name_by([](const fs::path& file) { return file.stem().string(); });
+  if (!differ(names))
+    names = name_by([](const fs::path& file) { return file.parent_path().filename().string(); });
+  if (!differ(names)) names = name_by([](const fs::path& file) { return file.string(); });
   return names;
 }
 
@@ -57,16 +70,21 @@ void WritePlots(const fs::path& folder, const Trajectory& truth,
             << (folder / "error.svg").string() << "\n";
 }
 
-void WriteJson(const EvaluateArguments& arguments, const std::vector<Evaluation>& evaluations) {
-  nlohmann::json json = {{"groundtruth", arguments.truth_file.string()},
-                         {"alignment", arguments.free_scale ? "sim3" : "se3"},
-                         {"estimates", nlohmann::json::array()}};
+void WriteJson(const EvaluateArguments& arguments, const std::vector<Evaluation>& evaluations,
+               const std::vector<MaskScore>& scores) {
+  nlohmann::json json = nlohmann::json::object();
+  if (!arguments.truth_file.empty()) {
+    json = {{"groundtruth", arguments.truth_file.string()},
+            {"alignment", arguments.free_scale ? "sim3" : "se3"},
+            {"estimates", nlohmann::json::array()}};
+  }
   for (const Evaluation& evaluation : evaluations)
     json["estimates"].push_back(EvaluationToJson(evaluation));
+  for (const MaskScore& score : scores) json["masks"].push_back(MaskScoreToJson(score));
   Require(WriteFileAtomically(arguments.json_file, json.dump(2) + "\n"));
 }
 
-void Evaluate(const EvaluateArguments& arguments) {
+std::vector<Evaluation> EvaluateTrajectories(const EvaluateArguments& arguments) {
   EvaluationOptions options;
   options.scale = arguments.free_scale ? ScaleEstimation::kFree : ScaleEstimation::kFixed;
   options.num_input_frames = NumInputFrames(arguments);
@@ -80,8 +98,40 @@ void Evaluate(const EvaluateArguments& arguments) {
   std::cout << FormatTable(evaluations);
   if (!options.num_input_frames)
     std::cout << "The coverage needs the number of input frames: --dataset DIR or --frames N.\n";
-  if (!arguments.json_file.empty()) WriteJson(arguments, evaluations);
   if (!arguments.plot_folder.empty()) WritePlots(arguments.plot_folder, truth, evaluations);
+  return evaluations;
+}
+
+// The labels of a run lie beside its trajectory unless they are named.
+std::vector<MaskScore> ScoreMasks(const EvaluateArguments& arguments) {
+  std::vector<fs::path> files = arguments.label_files;
+  if (files.empty()) {
+    for (const fs::path& estimate : arguments.estimate_files)
+      files.push_back(estimate.parent_path() / "labels.csv");
+  }
+  if (files.empty())
+    throw CommandFailure("--masks needs --labels FILE, the labels.csv of a run with --labels");
+  std::vector<MaskScore> scores;
+  for (const fs::path& file : files) {
+    const std::string name =
+        file.parent_path().empty() ? file.stem().string() : file.parent_path().string();
+    scores.push_back(Require(ScoreAgainstMasks(name, file, arguments.mask_folder)));
+    std::cout << FormatMaskScore(scores.back());
+  }
+  return scores;
+}
+
+void Evaluate(const EvaluateArguments& arguments) {
+  if (arguments.estimate_files.empty() &&
+      (!arguments.truth_file.empty() || arguments.mask_folder.empty()))
+    throw CommandFailure(
+        "name the true trajectory and at least one estimated one, or --masks DIR and --labels "
+        "FILE");
+  std::vector<Evaluation> evaluations;
+  std::vector<MaskScore> scores;
+  if (!arguments.estimate_files.empty()) evaluations = EvaluateTrajectories(arguments);
+  if (!arguments.mask_folder.empty()) scores = ScoreMasks(arguments);
+  if (!arguments.json_file.empty()) WriteJson(arguments, evaluations, scores);
 }
 
 }  // namespace
@@ -89,11 +139,10 @@ void Evaluate(const EvaluateArguments& arguments) {
 void AddEvaluateCommand(CLI::App& app) {
   auto arguments = std::make_shared<EvaluateArguments>();
   CLI::App* command = app.add_subcommand(
-      "evaluate", "Compare trajectories with the ground truth: ATE, RPE, coverage");
-  command->add_option("groundtruth", arguments->truth_file, "true trajectory, TUM text")
-      ->required();
-  command->add_option("estimates", arguments->estimate_files, "estimated trajectories, TUM text")
-      ->required();
+      "evaluate",
+      "Compare with the truth: trajectories (ATE, RPE, coverage) and what was found to move");
+  command->add_option("groundtruth", arguments->truth_file, "true trajectory, TUM text");
+  command->add_option("estimates", arguments->estimate_files, "estimated trajectories, TUM text");
   command->add_flag("--scale", arguments->free_scale,
                     "align with scale (Sim3), for monocular estimates");
   command->add_option("--json", arguments->json_file, "write all figures to this file");
@@ -106,6 +155,15 @@ void AddEvaluateCommand(CLI::App& app) {
       ->add_option("--dataset", arguments->dataset_folder,
                    "count the input frames of this data set, for the coverage")
       ->excludes(frames);
+  CLI::Option* masks =
+      command->add_option("--masks", arguments->mask_folder,
+                          "score the removal of moving things: folder of true masks (TIME.png, 0 = "
+                          "static), or a data set with mask/");
+  command
+      ->add_option(
+          "--labels", arguments->label_files,
+          "labels.csv of runs with --labels; default: those beside the estimated trajectories")
+      ->needs(masks);
   command->callback([arguments] { Evaluate(*arguments); });
 }
 

@@ -22,12 +22,21 @@ void DeclareRunArguments(CLI::App& command, RunArguments& arguments) {
                   "one option as section.key=value; may be repeated")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("--dynamic", arguments.dynamic, "what happens to moving things: off, boxes, paper or full")
+  command
+      .add_option("--dynamic", arguments.dynamic,
+                  "what happens to moving things: off, boxes, paper or full")
       ->type_name("MODE");
-  command.add_option("--detector", arguments.detector, "model that finds people and things: ONNX file, name of one that ships, or none")
+  command
+      .add_option("--detector", arguments.detector,
+                  "model that finds people and things: ONNX file, name of one that ships, or none")
       ->type_name("MODEL");
   auto* deterministic = command.add_flag("--deterministic", arguments.deterministic,
                                          "all stages on one thread; two runs give equal bytes");
+  command.add_option("--overlay", arguments.overlay,
+                     "show what was found to move: FILE.mp4 for a video, or a folder for pictures");
+  command.add_flag("--labels", arguments.labels,
+                   "also write labels.csv and objects.csv: what was said about every point and "
+                   "object, for 'evaluate --masks'");
   command
       .add_flag("--realtime", arguments.real_time,
                 "give frames at the pace of their time stamps; late ones are dropped")
@@ -51,6 +60,11 @@ SystemOptions ResolveOptions(const RunArguments& arguments) {
   if (arguments.deterministic) options.deterministic = true;
   if (arguments.seed) options.seed = *arguments.seed;
   Require(options.Check());
+  if (options.dynamic.mode == "off" && (arguments.labels || !arguments.overlay.empty())) {
+    throw CommandFailure(
+        "--overlay and --labels tell what was found to move; with --dynamic off nothing is looked "
+        "for");
+  }
   return options;
 }
 

@@ -22,6 +22,8 @@ struct RunArguments {
   size_t max_frames = 0;  // 0: all
   std::filesystem::path out_folder;
   std::optional<uint64_t> seed;
+  std::filesystem::path overlay;
+  bool labels = false;
 };
 
 void DeclareRunArguments(CLI::App& command, RunArguments& arguments);

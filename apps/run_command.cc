@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "apps/command.h"
+#include "apps/dynamics_recorder.h"
 #include "apps/run_arguments.h"
 #include "evaluation/run_folder.h"
 #include "io/tum_dataset.h"
@@ -18,6 +19,7 @@
 #include "system/system.h"
 #include "util/options.h"
 #include "util/progress.h"
+#include "viewer/overlay_recorder.h"
 
 namespace msf {
 namespace {
@@ -95,9 +97,19 @@ class RunSession {
       : arguments_(arguments),
         options_(options),
         dataset_(std::move(dataset)),
-        system_(Require(System::Create(options, dataset_.camera()))) {}
+        recorder_(std::make_shared<DynamicsRecorder>(arguments.labels)),
+        system_(Require(System::Create(options, dataset_.camera()))) {
+    system_->AddObserver(recorder_);
+    if (arguments.overlay.empty()) return;
+    overlay_ = Require(
+        OverlayRecorder::Create(arguments.overlay, dataset_.camera().fps, arguments.real_time));
+    system_->AddObserver(overlay_);
+  }
 
   RunResults Run(Clock::time_point start);
+  // What the run leaves behind besides its results: labels.csv and objects.csv in `folder`, and the
+  // overlay.
+  Status WriteRecordings(const fs::path& folder);
 
  private:
   size_t NumFrames() const {
@@ -109,10 +121,13 @@ class RunSession {
   void FillPoses(const Reconstruction& reconstruction, const Recording& recording,
                  RunResults& results) const;
   void ReadGroundTruth(RunResults& results) const;
+  void DescribeDynamics(const DetectionStatistics& detection, RunResults& results) const;
 
   const RunArguments& arguments_;
   const SystemOptions options_;
   TumDataset dataset_;
+  const std::shared_ptr<DynamicsRecorder> recorder_;
+  std::shared_ptr<OverlayRecorder> overlay_;  // null when nobody wants one
   std::unique_ptr<System> system_;
 };
 
@@ -160,7 +175,9 @@ FrameRecord RunSession::TrackOne(const StatusOr<RgbdFramePtr>& frame, Recording&
   recording.tracked_index.back() =
       std::count_if(recording.tracked_index.begin(), recording.tracked_index.end(),
                     [](int64_t i) { return i >= 0; });
-  return RecordOf(*result);
+  FrameRecord record = RecordOf(*result);
+  record.dynamics = recorder_->TakeLast();
+  return record;
 }
 
 void RunSession::FillPoses(const Reconstruction& reconstruction, const Recording& recording,
@@ -206,6 +223,27 @@ void RunSession::ReadGroundTruth(RunResults& results) const {
   }
 }
 
+void RunSession::DescribeDynamics(const DetectionStatistics& detection, RunResults& results) const {
+  results.dynamic_mode = options_.dynamic.mode;
+  if (!options_.WantsDetector()) return;
+  results.detector =
+      DetectorRecord{options_.detector.model, detection.num_detected, detection.num_failed,
+                     detection.first_failure, detection.mean_ms};
+}
+
+Status RunSession::WriteRecordings(const fs::path& folder) {
+  if (overlay_) MSF_RETURN_IF_ERROR(overlay_->Finish());
+  const fs::path labels = folder / "labels.csv", objects = folder / "objects.csv";
+  if (arguments_.labels) {
+    MSF_RETURN_IF_ERROR(WriteLabels(labels, recorder_->labels()));
+    return WriteObjects(objects, recorder_->labels());
+  }
+  std::error_code ignored;
+  for (const fs::path& of_an_earlier_run : {labels, objects})
+    fs::remove(of_an_earlier_run, ignored);
+  return Status::Ok();
+}
+
 RunResults RunSession::Run(Clock::time_point start) {
   const InterruptGuard guard;
   const Recording recording = TrackAll(start);
@@ -219,6 +257,11 @@ RunResults RunSession::Run(Clock::time_point start) {
   results.num_maps = reconstruction.num_maps;
   results.num_loops = reconstruction.num_loops;
   results.num_merges = reconstruction.num_merges;
+  DescribeDynamics(reconstruction.detection, results);
+  if (overlay_ && overlay_->num_left_out() > 0) {
+    results.warnings.push_back(fmt::format(
+        "the overlay lacks {} frames that could not be drawn in time", overlay_->num_left_out()));
+  }
   results.wall_time_s = SecondsSince(start);
   results.time_to_first_pose_s = recording.time_to_first_pose_s;
   results.usage = ReadProcessUsage();
@@ -258,8 +301,11 @@ void Run(const RunArguments& arguments) {
   const RunReport report = MakeRunReport(results);
   const Status written = WriteRunFolder(out_folder, results, report);
   std::cout << FormatRunReport(report);
+  const Status recorded = session.WriteRecordings(out_folder);
   Require(written);
+  Require(recorded);
   std::cout << "results: " << out_folder.string() << "\n";
+  if (!arguments.overlay.empty()) std::cout << "overlay: " << arguments.overlay.string() << "\n";
   if (report.num_poses == 0) throw CommandFailure(WhyNothingWasTracked(results));
 }
 

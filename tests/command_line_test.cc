@@ -77,5 +77,38 @@ TEST(CommandLine, EvaluateExplainsMistakes) {
   EXPECT_NE(RunProgram("evaluate " + truth + truth + "--frames 5 --dataset " + path).exit_code, 0);
 }
 
+TEST(CommandLine, WhatMovesIsShownLabelledAndScored) {
+  const TestFolder folder;
+  const std::string path = folder.path().string() + "/";
+  Outcome outcome = RunProgram("simulate flying_box --frames 12 --out " + path + "data");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const std::string run =
+      "run " + path + "data --deterministic --detector none --out " + path + "out ";
+  outcome = RunProgram(run + "--labels --overlay " + path + "pictures");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("dynamic      full"), HasSubstr("overlay: ")));
+  EXPECT_TRUE(std::filesystem::exists(folder / "pictures/000011.jpg"));
+  EXPECT_THAT(ReadWholeFile(folder / "out/frames.csv"), HasSubstr(",points_static,"));
+  const nlohmann::json report = nlohmann::json::parse(ReadWholeFile(folder / "out/report.json"));
+  EXPECT_GT(report.at("dynamic").at("points").at("static").get<int>(), 1000);
+
+  outcome = RunProgram("evaluate --masks " + path + "data --labels " + path +
+                       "out/labels.csv --json " + path + "e.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output,
+              AllOf(HasSubstr("12 frames"), HasSubstr("static points kept"), HasSubstr("box, ")));
+  const nlohmann::json score =
+      nlohmann::json::parse(ReadWholeFile(folder / "e.json")).at("masks").at(0);
+  EXPECT_EQ(score.at("frames"), 12);
+  EXPECT_GT(score.at("static").at("points").get<int>(), 1000);
+
+  ASSERT_EQ(RunProgram(run).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/labels.csv")) << "of an earlier run";
+  ExpectSentence(RunProgram(run + "--dynamic off --labels"),
+                 "with --dynamic off nothing is looked for");
+  ExpectSentence(RunProgram("evaluate --masks " + path + "data"), "--labels");
+  ExpectSentence(RunProgram("evaluate"), "name the true trajectory");
+}
+
 }  // namespace
 }  // namespace msf

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
 #include <system_error>
 
+#include "evaluation/dynamics_summary.h"
 #include "evaluation/trajectory_plot.h"
 #include "util/atomic_file.h"
 
@@ -25,10 +27,12 @@ std::string Quoted(const std::string& text) {
   return quoted + '"';
 }
 
-std::string CsvRow(size_t index, const FrameRecord& frame, const std::set<std::string>& stages) {
+std::string CsvRow(size_t index, const FrameRecord& frame, const std::set<std::string>& stages,
+                   bool with_dynamics) {
   std::string row = fmt::format("{},{:.6f},{},{},{},", index, frame.time_s, frame.state,
                                 frame.T_wc ? 1 : 0, frame.num_inliers);
   if (frame.keyframe_id >= 0) row += std::to_string(frame.keyframe_id);
+  if (with_dynamics) row += DynamicsCsvCells(frame.dynamics ? &*frame.dynamics : nullptr);
   for (const std::string& stage : stages) {
     const auto ms = frame.timings_ms.find(stage);
     row += ms == frame.timings_ms.end() ? "," : fmt::format(",{:.3f}", ms->second);
@@ -43,10 +47,14 @@ std::string FormatFramesCsv(const std::vector<FrameRecord>& frames) {
   for (const FrameRecord& frame : frames) {
     for (const auto& [stage, ms] : frame.timings_ms) stages.insert(stage);
   }
+  const bool with_dynamics =
+      std::any_of(frames.begin(), frames.end(),
+                  [](const FrameRecord& frame) { return frame.dynamics.has_value(); });
   std::string csv = "frame,time_s,state,pose,inliers,keyframe_id";
+  if (with_dynamics) csv += DynamicsCsvHeader();
   for (const std::string& stage : stages) csv += "," + stage + "_ms";
   csv += ",note\n";
-  for (size_t i = 0; i < frames.size(); ++i) csv += CsvRow(i, frames[i], stages);
+  for (size_t i = 0; i < frames.size(); ++i) csv += CsvRow(i, frames[i], stages, with_dynamics);
   return csv;
 }
 

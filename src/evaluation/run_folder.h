@@ -22,8 +22,8 @@ Status WriteRunFolder(const std::filesystem::path& folder, const RunResults& res
                       const RunReport& report);
 
 // The text of frames.csv: a header, then one row per input frame with
-// frame,time_s,state,pose,inliers,keyframe_id,<stage>_ms...,note. A stage that a frame did not have
-// is an empty cell.
+// frame,time_s,state,pose,inliers,keyframe_id,<dynamics>...,<stage>_ms...,note. What a frame did
+// not have is an empty cell; the columns about dynamic points are there when any frame has them.
 std::string FormatFramesCsv(const std::vector<FrameRecord>& frames);
 
 }  // namespace msf

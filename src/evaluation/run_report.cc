@@ -123,6 +123,11 @@ RunReport MakeRunReport(const RunResults& results) {
   report.warnings = results.warnings;
   if (std::optional<std::string> missing = DescribeMissing(results.frames))
     report.warnings.push_back(*std::move(missing));
+  report.dynamics = SummarizeDynamics(results);
+  if (report.dynamics) {
+    for (std::string& warning : report.dynamics->Warnings())
+      report.warnings.push_back(std::move(warning));
+  }
   AddEvaluation(results, report);
   return report;
 }
@@ -156,6 +161,7 @@ nlohmann::json RunReportToJson(const RunReport& report) {
       {"maps", report.num_maps},
       {"loops", report.num_loops},
       {"merges", report.num_merges},
+      {"dynamic", report.dynamics ? DynamicsToJson(*report.dynamics) : nlohmann::json()},
       {"timing_ms", std::move(timings)},
       {"wall_time_s", report.wall_time_s},
       {"cpu_time_s", report.usage.cpu_time_s},
@@ -181,6 +187,7 @@ std::string FormatRunReport(const RunReport& report) {
   text += fmt::format("map          {} keyframes, {} points, {} loops closed, {} maps, {} merged\n",
                       report.num_keyframes, report.num_points, report.num_loops, report.num_maps,
                       report.num_merges);
+  if (report.dynamics) text += FormatDynamics(*report.dynamics);
   const double rate =
       report.wall_time_s > 0 ? static_cast<double>(report.num_frames) / report.wall_time_s : 0;
   text += fmt::format(

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/dynamics_summary.h"
 #include "evaluation/evaluation.h"
 #include "evaluation/run_results.h"
 
@@ -39,6 +40,7 @@ struct RunReport {
   ProcessUsage usage;
   bool interrupted = false;
   std::vector<std::string> warnings;
+  std::optional<DynamicsSummary> dynamics;  // empty in mode off
   std::optional<Evaluation> evaluation;
   std::string evaluation_problem;  // why there is none although there should be
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/dynamics_record.h"
 #include "io/ply.h"
 #include "io/trajectory.h"
 #include "util/process_usage.h"
@@ -22,12 +23,15 @@ struct FrameRecord {
   int num_inliers = 0;
   int64_t keyframe_id = -1;  // the keyframe that this frame became; -1 for none
   StageTimings timings_ms;
-  std::string note;  // why an image was missing, or empty
+  std::optional<DynamicsRecord> dynamics;  // empty in mode off and for frames that were not tracked
+  std::string note;                        // why an image was missing, or empty
 };
 
 struct RunResults {
-  std::string name;                 // of the sequence
-  std::string mode;                 // "deterministic", "threaded", "real time"
+  std::string name;          // of the sequence
+  std::string mode;          // "deterministic", "threaded", "real time"
+  std::string dynamic_mode;  // "off", "boxes", "paper", "full"
+  std::optional<DetectorRecord> detector;
   std::vector<FrameRecord> frames;  // one per input frame, in order of time
   Trajectory keyframes;             // final poses
   std::vector<PlyPoint> points;     // the sparse map
