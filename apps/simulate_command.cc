@@ -30,6 +30,7 @@ struct SimulateArguments {
   uint64_t seed = 1;
   int frames = 0;
   std::vector<std::string> settings;
+  bool without_actors = false;
 };
 
 // The lines of actors.txt for one frame.
@@ -48,6 +49,7 @@ std::string DescribeActors(const SimulatedFrame& simulated,
 void Simulate(const SimulateArguments& arguments) {
   Scenario scenario = Require(LoadScenario(arguments.scenario));
   for (const std::string& setting : arguments.settings) Require(SetOption(setting, scenario));
+  if (arguments.without_actors) scenario.actors.clear();
   if (arguments.frames > 0) scenario.duration_s = arguments.frames / scenario.fps;
   DatasetWriter writer = Require(DatasetWriter::Create(arguments.folder, kScenarioFile));
   Simulator simulator = Require(Simulator::Create(scenario, arguments.seed));
@@ -89,6 +91,8 @@ void AddSimulateCommand(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--set", arguments->settings,
                       "override the scenario, e.g. color.blur_samples=4");
+  command->add_flag("--without-actors", arguments->without_actors,
+                    "leave out what moves; world, camera path and noise stay as they are");
   command->footer("Keys of a scenario, with defaults:\n" + DescribeOptions<Scenario>());
   command->callback([arguments] { Simulate(*arguments); });
 }

@@ -36,7 +36,8 @@ class Person : public Actor {
   BodyPose PoseAt(double time_s) const {
     if (options_.kind == "sitter")
       return SittingPose(path_.PlaceAt(0), path_.HeadingAt(0), time_s, manner_);
-    return WalkingPose(path_, time_s + options_.start_s, manner_, options_.kind == "carrier");
+    const bool hands_are_full = options_.kind == "carrier" || options_.kind == "pusher";
+    return WalkingPose(path_, time_s + options_.start_s, manner_, hands_are_full);
   }
 
  private:
@@ -47,28 +48,42 @@ class Person : public Actor {
   int label_;
 };
 
+// Somebody with a thing: before the hands or, when it is pushed, before the feet.
 class Carrier : public Person {
  public:
-  Carrier(Person person, Mesh box, int box_label)
-      : Person(std::move(person)), box_(std::move(box)), box_label_(box_label) {}
+  Carrier(Person person, Mesh thing, int thing_label, bool pushes)
+      : Person(std::move(person)),
+        thing_(std::move(thing)),
+        thing_label_(thing_label),
+        pushes_(pushes) {}
 
   void Place(double time_s, std::vector<PlacedMesh>& out) const override {
     Person::Place(time_s, out);
     const BodyPose pose = PoseAt(time_s);
-    Eigen::Vector3d foot = Mannequin::BetweenHands(pose);
-    foot.head<2>() += 0.15 * pose.heading;
-    foot.z() -= 0.08;
-    PlacedMesh box{{}, box_label_};
-    box.mesh.Append(box_, FacingAlong(pose.heading, foot));
-    out.push_back(std::move(box));
+    PlacedMesh thing{{}, thing_label_};
+    thing.mesh.Append(
+        thing_, FacingAlong(pose.heading, pushes_ ? BeforeTheFeet(pose) : BeforeTheHands(pose)));
+    out.push_back(std::move(thing));
   }
 
  private:
-  Mesh box_;
-  int box_label_;
+  static Eigen::Vector3d BeforeTheHands(const BodyPose& pose) {
+    Eigen::Vector3d foot = Mannequin::BetweenHands(pose);
+    foot.head<2>() += 0.15 * pose.heading;
+    foot.z() -= 0.08;
+    return foot;
+  }
+  static Eigen::Vector3d BeforeTheFeet(const BodyPose& pose) {
+    const Eigen::Vector2d place = pose.place + 0.7 * pose.heading;
+    return {place.x(), place.y(), 0};
+  }
+
+  Mesh thing_;
+  int thing_label_;
+  bool pushes_;
 };
 
-// A box that slides or a ball that rolls.
+// A box or chair that slides or a ball that rolls, on the floor or through the air.
 class Thing : public Actor {
  public:
   Thing(const ActorOptions& options, const WalkPath& path, Mesh mesh, int label)
@@ -107,10 +122,11 @@ class Thing : public Actor {
 }  // namespace
 
 Status ActorOptions::Check() const {
-  const std::vector<std::string> kinds = {"walker", "carrier", "sitter", "box", "ball"};
+  const std::vector<std::string> kinds = {"walker", "carrier", "pusher", "sitter",
+                                          "box",    "ball",    "chair"};
   if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
     return Status::Error("actors: kind is '" + kind +
-                         "'; known are walker, carrier, sitter, box, ball");
+                         "'; known are walker, carrier, pusher, sitter, box, ball, chair");
   }
   if (!(size_m > 0)) return Status::Error("actors: size_m must be positive");
   const Status status = WalkPath::Check(stations, speed_m_s);
@@ -138,10 +154,16 @@ std::unique_ptr<Actor> Cast::MakeActor(const ActorOptions& options, SceneBuilder
     return std::make_unique<Thing>(
         options, path, MakeCarton(builder, size, 0.8f * size, 0.75f * size), NewLabel("box"));
   }
+  if (options.kind == "chair") {
+    return std::make_unique<Thing>(options, path, MakeChair(builder), NewLabel("chair"));
+  }
   Person person(options, path, Mannequin(builder), random, NewLabel("person"));
+  if (options.kind == "pusher")
+    return std::make_unique<Carrier>(std::move(person), MakeChair(builder), NewLabel("chair"),
+                                     true);
   if (options.kind != "carrier") return std::make_unique<Person>(std::move(person));
   Mesh box = MakeCarton(builder, size, 0.75f * size, 0.7f * size);
-  return std::make_unique<Carrier>(std::move(person), std::move(box), NewLabel("box"));
+  return std::make_unique<Carrier>(std::move(person), std::move(box), NewLabel("box"), false);
 }
 
 std::vector<PlacedMesh> Cast::At(double time_s) const {

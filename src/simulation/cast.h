@@ -25,14 +25,17 @@ struct ActorOptions {
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
-    visit("kind", kind, "walker, carrier (a walker with a box in the hands), sitter, box or ball");
+    visit("kind", kind,
+          "walker, carrier (a walker with a box in the hands), pusher (one with a chair before the "
+          "feet), "
+          "sitter, box, ball or chair");
     visit("stations", stations, "the way over the floor; a sitter has one");
     visit("closed", closed, "true: from the last station back to the first, again and again");
     visit("speed_m_s", speed_m_s, "on the way");
     visit("start_s", start_s, "how long the actor has been on the way when the sequence begins");
     visit("heading_deg", heading_deg, "where one who stays in place looks: 0 east, 90 north");
-    visit("height_m", height_m, "of the underside of a box or ball above the floor");
-    visit("size_m", size_m, "width of a box, diameter of a ball");
+    visit("height_m", height_m, "of the underside of a thing above the floor");
+    visit("size_m", size_m, "width of a box, diameter of a ball; chairs have their own");
   }
   Status Check() const;
 };
@@ -52,7 +55,7 @@ class Cast {
 
   // Everything that moves, in world coordinates; labels count from 1.
   std::vector<PlacedMesh> At(double time_s) const;
-  // Class of label i at [i - 1]: "person", "box" or "ball".
+  // Class of label i at [i - 1]: "person", "box", "ball" or "chair".
   const std::vector<std::string>& classes() const { return classes_; }
 
  private:

@@ -29,7 +29,8 @@ TEST(Scenario, EveryKnownOneIsValid) {
   const std::vector<std::string> names = ScenarioNames();
   for (const char* name :
        {"xyz", "rpy", "halfsphere", "static", "two_room_loop", "atlas", "walking_xyz",
-        "walking_rpy", "walking_halfsphere", "walking_static", "sitting_xyz", "moving_box"}) {
+        "walking_rpy", "walking_halfsphere", "walking_static", "sitting_xyz", "moving_box",
+        "pushed_chair", "flying_box", "busy_office"}) {
     EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
   }
   for (const std::string& name : names) {
@@ -152,6 +153,20 @@ TEST(Simulator, CarriedThingsHaveALabelOfTheirOwn) {
       seen.insert(actor.label);
   }
   EXPECT_EQ(seen, std::set<int>({1, 2, 3, 4}));
+}
+
+TEST(Simulator, APushedChairIsBeforeThePusher) {
+  Simulator simulator = *Simulator::Create(*LoadScenario("pushed_chair"), 1);
+  EXPECT_EQ(simulator.actor_classes(), std::vector<std::string>({"person", "chair", "chair"}));
+  int pictures_with_both = 0;
+  for (int i = 0; i <= 75; i += 15) {  // on the way from left to right
+    const std::vector<VisibleActor> visible = FindVisibleActors(simulator.Render(i).mask);
+    if (visible.size() < 2 || visible[0].label != 1 || visible[1].label != 2) continue;
+    ++pictures_with_both;
+    const cv::Rect &person = visible[0].box, &chair = visible[1].box;
+    EXPECT_GT(chair.x + chair.br().x, person.x + person.br().x) << i;
+  }
+  EXPECT_GE(pictures_with_both, 2);
 }
 
 TEST(Simulator, DarknessAndJumps) {
