@@ -72,12 +72,16 @@ void DrawPoints(const DynamicsView& view, cv::Mat& image) {
   }
 }
 
-// Boxes that are followed without a detection have thin lines.
+// Thin lines: followed without a detection. Grey: its points are used.
 void DrawObject(const DynamicObject& object, cv::Mat& image) {
-  const cv::Scalar color = ColorOf(object.state);
+  const cv::Scalar color = object.removed || object.state == MotionState::kStatic
+                               ? ColorOf(object.state)
+                               : cv::Scalar::all(150);
   const cv::Rect2f box(object.box.x0, object.box.y0, object.box.width() - 1,
                        object.box.height() - 1);
   cv::rectangle(image, cv::Rect(box), color, object.bridged ? 1 : 2);
+  if (!object.removed && object.kind == ObjectKind::kUnknown)
+    return;  // many, and most of them chance
   std::string label = fmt::format("{} {} {}", object.id, object.name, ToString(object.state));
   if (object.kind != ObjectKind::kUnknown) label += fmt::format(" {:.2f}", object.score);
   if (object.bridged) label += " followed";

@@ -23,6 +23,7 @@ DynamicsView SmallView() {
   view.result.mask(cv::Rect(40, 20, 20, 20)).setTo(255);
   view.result.objects.resize(1);
   view.result.objects[0].name = "person";
+  view.result.objects[0].removed = true;
   view.result.objects[0].box = {160, 80, 240, 160};
   return view;
 }
