@@ -226,9 +226,10 @@ void RunSession::ReadGroundTruth(RunResults& results) const {
 void RunSession::DescribeDynamics(const DetectionStatistics& detection, RunResults& results) const {
   results.dynamic_mode = options_.dynamic.mode;
   if (!options_.WantsDetector()) return;
-  results.detector =
-      DetectorRecord{options_.detector.model, detection.num_detected, detection.num_failed,
-                     detection.first_failure, detection.mean_ms};
+  const DetectorOptions& detector = options_.detector;
+  results.detector = DetectorRecord{
+      fmt::format("{} ({}, {})", detector.model, detector.backend, detector.precision),
+      detection.num_detected, detection.num_failed, detection.first_failure, detection.mean_ms};
 }
 
 Status RunSession::WriteRecordings(const fs::path& folder) {
