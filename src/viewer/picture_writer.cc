@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 #include <system_error>
@@ -32,6 +34,12 @@ class VideoFile : public PictureWriter {
     video_.release();
     std::error_code ignored;
     fs::remove(part_, ignored);
+  }
+
+  // The encoder opens the file with the first picture; whether there can be one is known now.
+  Status Prepare() const {
+    if (std::ofstream(part_)) return Status::Ok();
+    return CannotWrite(target_, std::generic_category().message(errno));
   }
 
   Status Add(const cv::Mat& picture) override {
@@ -121,7 +129,9 @@ StatusOr<std::unique_ptr<PictureWriter>> PictureWriter::Create(const fs::path& t
   if (error) return CannotWrite(target, error.message());
   if (path.extension() == ".mp4") {
     if (fs::is_directory(path)) return CannotWrite(target, "it is a folder");
-    return std::unique_ptr<PictureWriter>(std::make_unique<VideoFile>(path, fps));
+    auto video = std::make_unique<VideoFile>(path, fps);
+    MSF_RETURN_IF_ERROR(video->Prepare());
+    return std::unique_ptr<PictureWriter>(std::move(video));
   }
   auto folder = std::make_unique<PictureFolder>(path);
   MSF_RETURN_IF_ERROR(folder->Prepare());

@@ -106,6 +106,8 @@ TEST(PictureWriter, OtherFilesAreNotThrownAway) {
   EXPECT_THAT(PictureWriter::Create(folder / "pictures/thesis.tex", 30).message(),
               HasSubstr(".mp4"));
   EXPECT_FALSE(PictureWriter::Create(folder / "pictures/thesis.tex/a.mp4", 30).ok());
+  EXPECT_FALSE(PictureWriter::Create("/proc/a.mp4", 30).ok());
+  EXPECT_FALSE(PictureWriter::Create("/proc/pictures", 30).ok());
 }
 
 TEST(OverlayRecorder, DrawsEveryFrameOnce) {
