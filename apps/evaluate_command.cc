@@ -45,6 +45,7 @@ std::optional<size_t> NumInputFrames(const EvaluateArguments& arguments) {
 std::vector<std::string> NamesOf(const std::vector<fs::path>& files) {
   const auto name_by = [&](const std::function<std::string(const fs::path&)>& name) {
     std::vector<std::string> names;
+    names.reserve(files.size());
     for (const fs::path& file : files) names.push_back(name(file));
     return names;
   };
