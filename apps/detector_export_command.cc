@@ -16,6 +16,8 @@ struct ExportArguments {
   std::string model = "yolov8n";
   std::string weights;
   std::string out;
+  std::string blend;
+  double blend_share = 0.5;
   bool single_output = false;
   bool full_precision = false;
   int width = 640;
@@ -24,7 +26,11 @@ struct ExportArguments {
 
 void Export(const ExportArguments& arguments) {
   const ModelConfig config = Require(LoadModelConfig(arguments.model));
-  const NamedTensors weights = Require(LoadTensors(arguments.weights));
+  NamedTensors weights = Require(LoadTensors(arguments.weights));
+  if (!arguments.blend.empty()) {
+    weights = Require(
+        BlendWeights(weights, Require(LoadTensors(arguments.blend)), arguments.blend_share));
+  }
   Network network(BuildModelGraph(config), 0);
   Require(network.Load(Require(AdaptWeights(weights, network.graph()))));
   OnnxOptions options;
@@ -49,6 +55,13 @@ void AddDetectorExportCommand(CLI::App& app) {
   command->add_option("--weights", arguments->weights, "weights.pt of a training, or COCO weights")
       ->required();
   command->add_option("--out", arguments->out, "ONNX file to write")->required();
+  command->add_option("--blend", arguments->blend,
+                      "weights.pt that the training started from: keeps more of what they could do "
+                      "that the training pictures do not show");
+  command
+      ->add_option("--blend-share", arguments->blend_share,
+                   "share of --blend in the mean of the two")
+      ->check(CLI::Range(0.0, 1.0));
   command->add_flag("--single-output", arguments->single_output,
                     "one output with decoded boxes, as common tools use, for one input size; else "
                     "raw heads for any size");

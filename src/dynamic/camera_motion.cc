@@ -8,8 +8,9 @@ namespace {
 constexpr int kFewestInliers = 15;
 constexpr double kFlowSigma_px = 0.5;
 
-std::vector<PoseObservation> Observe(const Camera& camera, const ScaleLevels& levels, const FrameFeatures& features,
-                                     std::span<const int> which, std::span<const FlowPoint> flow) {
+std::vector<PoseObservation> Observe(const Camera& camera, const ScaleLevels& levels,
+                                     const FrameFeatures& features, std::span<const int> which,
+                                     std::span<const FlowPoint> flow) {
   std::vector<PoseObservation> observations;
   for (size_t k = 0; k < which.size(); ++k) {
     const int i = which[k];
@@ -24,10 +25,13 @@ std::vector<PoseObservation> Observe(const Camera& camera, const ScaleLevels& le
   return observations;
 }
 
-std::optional<Rigid3d> EstimateByConsensus(const Camera& camera, const std::vector<PoseObservation>& observations, uint64_t seed) {
+std::optional<Rigid3d> EstimateByConsensus(const Camera& camera,
+                                           const std::vector<PoseObservation>& observations,
+                                           uint64_t seed) {
   std::vector<PnpMatch> matches;
   matches.reserve(observations.size());
-  for (const PoseObservation& o : observations) matches.push_back({o.p_w, o.uv_px, 1 / o.inv_sigma2});
+  for (const PoseObservation& o : observations)
+    matches.push_back({o.p_w, o.uv_px, 1 / o.inv_sigma2});
   PnpOptions options;
   options.ransac.max_iterations = 100;
   options.ransac.min_inliers = kFewestInliers;
@@ -39,8 +43,9 @@ std::optional<Rigid3d> EstimateByConsensus(const Camera& camera, const std::vect
 
 }  // namespace
 
-CameraMotion EstimateCameraMotion(const Camera& camera, const ScaleLevels& levels, const FrameFeatures& features,
-                                  std::span<const int> which, std::span<const FlowPoint> flow,
+CameraMotion EstimateCameraMotion(const Camera& camera, const ScaleLevels& levels,
+                                  const FrameFeatures& features, std::span<const int> which,
+                                  std::span<const FlowPoint> flow,
                                   const Rigid3d& T_past_now_predicted, uint64_t seed) {
   const std::vector<PoseObservation> observations = Observe(camera, levels, features, which, flow);
   CameraMotion motion;

@@ -16,10 +16,12 @@ struct CameraMotion {
   bool reliable = false;
 };
 
-// Refines `T_past_now_predicted` so that the features `which` (with depth) project to where `flow` found them in the past image:
-// robust pose optimisation; where fewer than half of the points agree with it, RANSAC (seeded) first.
-CameraMotion EstimateCameraMotion(const Camera& camera, const ScaleLevels& levels, const FrameFeatures& features,
-                                  std::span<const int> which, std::span<const FlowPoint> flow,
+// Refines `T_past_now_predicted` so that the features `which` (with depth) project to where `flow`
+// found them in the past image: robust pose optimisation; where fewer than half of the points agree
+// with it, RANSAC (seeded) first.
+CameraMotion EstimateCameraMotion(const Camera& camera, const ScaleLevels& levels,
+                                  const FrameFeatures& features, std::span<const int> which,
+                                  std::span<const FlowPoint> flow,
                                   const Rigid3d& T_past_now_predicted, uint64_t seed);
 
 }  // namespace msf

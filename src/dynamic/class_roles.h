@@ -19,7 +19,8 @@ const char* ToString(ObjectKind kind);
 class ClassRoles {
  public:
   // No class at all (no detector) is fine; a detector none of whose classes is listed is an error.
-  static StatusOr<ClassRoles> Create(const DynamicOptions& options, const std::vector<std::string>& class_names);
+  static StatusOr<ClassRoles> Create(const DynamicOptions& options,
+                                     const std::vector<std::string>& class_names);
   ClassRoles() = default;
 
   // Nothing for classes that stay where they are.

@@ -28,7 +28,9 @@ class CoarseDepth {
     return {std::clamp(static_cast<int>(x_px) / kCellSize, 0, cols() - 1),
             std::clamp(static_cast<int>(y_px) / kCellSize, 0, rows() - 1)};
   }
-  float At(const Eigen::Vector2f& image_px) const { return metres_(CellOf(image_px.x(), image_px.y())); }
+  float At(const Eigen::Vector2f& image_px) const {
+    return metres_(CellOf(image_px.x(), image_px.y()));
+  }
 
  private:
   cv::Mat1f metres_;

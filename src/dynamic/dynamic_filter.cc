@@ -4,17 +4,18 @@
 #include <cmath>
 #include <numeric>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "dynamic/moving_clusters.h"
 
 namespace msf {
 namespace {
 
-// Static probabilities. Points that are not used at all have less than DynamicOptions::min_static_probability.
+// Static probabilities. Points that are not used at all have less than
+// DynamicOptions::min_static_probability.
 constexpr float kOnObject = 0.05f;
 constexpr float kMovesTwice = 0.1f;
 constexpr float kMovesOnce = 0.25f;
-constexpr float kMovedSlowly = 0.6f;
 constexpr float kReadmittedWeight = 0.3f;
 
 // Detections come from outside: boxes are cut to the image, what makes no sense is left out.
@@ -22,13 +23,16 @@ std::vector<Detection> Sane(const std::vector<Detection>& detections, const Came
   std::vector<Detection> sane;
   for (Detection detection : detections) {
     ImageBox& box = detection.box;
-    if (!std::isfinite(box.x0 + box.y0 + box.x1 + box.y1) || !std::isfinite(detection.score)) continue;
-    box = {std::max(box.x0, 0.0f), std::max(box.y0, 0.0f), std::min(box.x1, static_cast<float>(camera.width)),
+    if (!std::isfinite(box.x0 + box.y0 + box.x1 + box.y1) || !std::isfinite(detection.score))
+      continue;
+    box = {std::max(box.x0, 0.0f), std::max(box.y0, 0.0f),
+           std::min(box.x1, static_cast<float>(camera.width)),
            std::min(box.y1, static_cast<float>(camera.height))};
     constexpr float kSmallest_px = 4;
     if (box.width() >= kSmallest_px && box.height() >= kSmallest_px) sane.push_back(detection);
   }
-  std::stable_sort(sane.begin(), sane.end(), [](const Detection& a, const Detection& b) { return a.score > b.score; });
+  std::stable_sort(sane.begin(), sane.end(),
+                   [](const Detection& a, const Detection& b) { return a.score > b.score; });
   return sane;
 }
 
@@ -36,10 +40,13 @@ ImageBox Moved(const ImageBox& box, const Eigen::Vector2f& by) {
   return {box.x0 + by.x(), box.y0 + by.y(), box.x1 + by.x(), box.y1 + by.y()};
 }
 
-Eigen::Vector2f Centre(const ImageBox& box) { return {0.5f * (box.x0 + box.x1), 0.5f * (box.y0 + box.y1)}; }
+Eigen::Vector2f Centre(const ImageBox& box) {
+  return {0.5f * (box.x0 + box.x1), 0.5f * (box.y0 + box.y1)};
+}
 
 // Component-wise median.
-std::optional<Eigen::Vector2f> MedianOf(const std::vector<Eigen::Vector2f>& shifts, size_t at_least) {
+std::optional<Eigen::Vector2f> MedianOf(const std::vector<Eigen::Vector2f>& shifts,
+                                        size_t at_least) {
   if (shifts.size() < at_least) return std::nullopt;
   std::vector<float> x, y;
   for (const Eigen::Vector2f& shift : shifts) {
@@ -53,36 +60,44 @@ std::optional<Eigen::Vector2f> MedianOf(const std::vector<Eigen::Vector2f>& shif
 }
 
 // What the camera's motion alone does to a pixel of the past image: how far it moves until now.
-Eigen::Vector2f CameraShift(const Camera& camera, const Rigid3d& T_now_past, const Eigen::Vector2f& past_px, double depth_m) {
+Eigen::Vector2f CameraShift(const Camera& camera, const Rigid3d& T_now_past,
+                            const Eigen::Vector2f& past_px, double depth_m) {
   constexpr double kUnknownDepth_m = 2;
-  const Eigen::Vector3d p =
-      T_now_past * camera.Unproject(camera.Undistort(past_px.cast<double>()), depth_m > 0 ? depth_m : kUnknownDepth_m);
+  const Eigen::Vector3d p = T_now_past * camera.Unproject(camera.Undistort(past_px.cast<double>()),
+                                                          depth_m > 0 ? depth_m : kUnknownDepth_m);
   if (p.z() <= 0) return Eigen::Vector2f::Zero();
   return camera.Distort(camera.Project(p)).cast<float>() - past_px;
 }
 
 }  // namespace
 
-StatusOr<std::unique_ptr<DynamicFilter>> DynamicFilter::Create(const DynamicOptions& options, const Camera& camera,
-                                                               const ScaleLevels& levels, const std::vector<std::string>& class_names,
-                                                               uint64_t seed) {
+StatusOr<std::unique_ptr<DynamicFilter>> DynamicFilter::Create(
+    const DynamicOptions& options, const Camera& camera, const ScaleLevels& levels,
+    const std::vector<std::string>& class_names, uint64_t seed) {
   if (const Status status = options.Check(); !status.ok()) return status;
   StatusOr<ClassRoles> roles = ClassRoles::Create(options, class_names);
   if (!roles.ok()) return roles.status();
-  return std::unique_ptr<DynamicFilter>(new DynamicFilter(options, camera, levels, *std::move(roles), seed));
+  return std::unique_ptr<DynamicFilter>(
+      new DynamicFilter(options, camera, levels, *std::move(roles), seed));
 }
 
-DynamicFilter::DynamicFilter(const DynamicOptions& options, const Camera& camera, const ScaleLevels& levels, ClassRoles roles,
-                             uint64_t seed)
-    : options_(options), camera_(camera), levels_(levels), seed_(seed), flow_options_(options.flow),
-      tracks_(options.tracks, std::move(roles)) {
+DynamicFilter::DynamicFilter(const DynamicOptions& options, const Camera& camera,
+                             const ScaleLevels& levels, ClassRoles roles, uint64_t seed)
+    : options_(options),
+      camera_(camera),
+      levels_(levels),
+      seed_(seed),
+      flow_options_(options.flow),
+      tracks_(options.tracks, std::move(roles)),
+      background_(options.background, camera) {
   if (options.mode == "paper") {
     flow_options_.shrink = 1;
     flow_options_.window_px = options.paper_window_px;
   }
 }
 
-DynamicResult DynamicFilter::Classify(const RgbdFrame& frame, const FrameFeatures& features, const Rigid3d& T_last_now_predicted,
+DynamicResult DynamicFilter::Classify(const RgbdFrame& frame, const FrameFeatures& features,
+                                      const Rigid3d& T_last_now_predicted,
                                       const Detections* detections) {
   DynamicResult result;
   result.labels = PointLabels(features.size());
@@ -117,12 +132,19 @@ void DynamicFilter::DropInBoxes(const Work& work, DynamicResult& result) const {
   result.mask = cv::Mat1b(work.view.depth.rows(), work.view.depth.cols(), static_cast<uint8_t>(0));
   for (const Detection& detection : work.detections) {
     const std::optional<ObjectKind> kind = tracks_.roles().KindOf(detection.class_id);
-    if (!kind || detection.score < (*kind == ObjectKind::kKnown ? options_.tracks.start_score : options_.tracks.potential_score)) continue;
+    if (!kind || detection.score < (*kind == ObjectKind::kKnown ? options_.tracks.start_score
+                                                                : options_.tracks.potential_score))
+      continue;
     result.mask |= WholeBox(work.view.depth, detection.box).cells;
-    result.objects.push_back({.name = tracks_.roles().NameOf(detection.class_id), .kind = *kind, .removed = true, .score = detection.score, .box = detection.box});
+    result.objects.push_back({.name = tracks_.roles().NameOf(detection.class_id),
+                              .kind = *kind,
+                              .removed = true,
+                              .score = detection.score,
+                              .box = detection.box});
     for (const int i : work.all) {
       const Eigen::Vector2f& px = work.features.image_px[i];
-      if (detection.box.Contains(px.x(), px.y())) result.labels.Set(i, PointReason::kBox, kOnObject);
+      if (detection.box.Contains(px.x(), px.y()))
+        result.labels.Set(i, PointReason::kBox, kOnObject);
     }
   }
 }
@@ -130,7 +152,8 @@ void DynamicFilter::DropInBoxes(const Work& work, DynamicResult& result) const {
 // Table 2 of the paper as printed: the raw flow, camera motion included, must not exceed L.
 void DynamicFilter::DropByRawFlow(const Work& work, DynamicResult& result) const {
   if (past_.empty()) return;
-  const std::vector<FlowPoint> flow = FollowPoints(work.view.image, past_.back().image, work.features.image_px, {}, flow_options_);
+  const std::vector<FlowPoint> flow =
+      FollowPoints(work.view.image, past_.back().image, work.features.image_px, {}, flow_options_);
   for (const int i : work.all) {
     if (result.labels.reason[i] != PointReason::kStatic || !flow[i].found) continue;
     const double moved_px = (flow[i].image_px - work.features.image_px[i]).norm();
@@ -138,18 +161,28 @@ void DynamicFilter::DropByRawFlow(const Work& work, DynamicResult& result) const
   }
 }
 
-void DynamicFilter::ClassifyByMotion(Work& work, const Rigid3d& T_last_now_predicted, DynamicResult& result) {
+void DynamicFilter::ClassifyByMotion(Work& work, const Rigid3d& T_last_now_predicted,
+                                     DynamicResult& result) {
   FollowCamera(T_last_now_predicted, work, result);
+  T_cw_expected_.reset();
+  if (T_cw_last_ && result.camera_motion_reliable && options_.compensate_camera_motion) {
+    T_cw_expected_ = past_.back().T_past_now.Inverse() * *T_cw_last_;
+    work.background =
+        background_.Compare(work.frame.time_s, work.view.depth, *T_cw_expected_, steady_);
+  }
   TestMotions(work);
   MoveTracks(work);
   if (work.has_detections) {
     tracks_.TakeDetections(work.detections, work.frame.time_s);
   }
   GrowMasks(work);
-  if (options_.unknown_movers && result.camera_motion_reliable) FindMovers(work);
+  if (options_.unknown_movers && result.camera_motion_reliable) {
+    FindMovers(work);
+    FindIntruders(work);
+  }
   GatherEvidence(work);
   tracks_.UpdateStates(work.frame.time_s);
-  tracks_.DropLost(work.frame.time_s, options_.bridging ? options_.tracks.bridge_s : 0);
+  tracks_.DropLost(work.frame.time_s, options_.bridging);
   LabelPoints(work, result);
   ReadmitPoints(work, result);
 }
@@ -160,12 +193,16 @@ void DynamicFilter::TakeDetections(const Detections& detections, Work& work) {
   if (last_detections_.valid() && detections.frame <= last_detections_) return;
   last_detections_ = detections.frame;
   work.has_detections = true;
-  work.detections = detections.frame == work.frame.id ? Sane(detections.objects, camera_) : CarryToNow(detections, work);
+  work.detections = detections.frame == work.frame.id ? Sane(detections.objects, camera_)
+                                                      : CarryToNow(detections, work);
 }
 
-std::vector<Detection> DynamicFilter::CarryToNow(const Detections& detections, const Work& work) const {
+std::vector<Detection> DynamicFilter::CarryToNow(const Detections& detections,
+                                                 const Work& work) const {
   std::vector<Detection> carried;
-  const auto then = std::find_if(past_.begin(), past_.end(), [&](const PastView& view) { return view.frame == detections.frame; });
+  const auto then = std::find_if(past_.begin(), past_.end(), [&](const PastView& view) {
+    return view.frame == detections.frame;
+  });
   if (then == past_.end()) return carried;  // too old to be placed
   for (Detection detection : Sane(detections.objects, camera_)) {
     if (!tracks_.roles().KindOf(detection.class_id)) continue;
@@ -176,19 +213,22 @@ std::vector<Detection> DynamicFilter::CarryToNow(const Detections& detections, c
 }
 
 // Follows points on the object from the image of the detection to this one.
-ImageBox DynamicFilter::CarryBox(const ImageBox& box, const PastView& then, const Work& work) const {
+ImageBox DynamicFilter::CarryBox(const ImageBox& box, const PastView& then,
+                                 const Work& work) const {
   constexpr int kStep = 3;  // cells
   constexpr size_t kEnough = 6;
-  const ObjectMask mask = MaskInBox(then.depth, box, std::nullopt, options_.mask);
+  const ObjectMask mask = MaskInBox(then.depth, {}, box, std::nullopt, options_.mask);
   std::vector<Eigen::Vector2f> points;
   for (int r = 0; r < mask.cells.rows; r += kStep) {
     for (int c = 0; c < mask.cells.cols; c += kStep) {
-      const Eigen::Vector2f px((static_cast<float>(c) + 0.5f) * CoarseDepth::kCellSize, (static_cast<float>(r) + 0.5f) * CoarseDepth::kCellSize);
+      const Eigen::Vector2f px((static_cast<float>(c) + 0.5f) * CoarseDepth::kCellSize,
+                               (static_cast<float>(r) + 0.5f) * CoarseDepth::kCellSize);
       if (mask.cells(r, c) != 0 && box.Contains(px.x(), px.y())) points.push_back(px);
     }
   }
   // Where a track was there then, it says where to look.
-  Eigen::Vector2f guess = CameraShift(camera_, then.T_past_now.Inverse(), Centre(box), mask.depth_m);
+  Eigen::Vector2f guess =
+      CameraShift(camera_, then.T_past_now.Inverse(), Centre(box), mask.depth_m);
   float best_iou = static_cast<float>(options_.tracks.min_iou);
   for (const ObjectTrack& track : tracks_.tracks()) {
     const std::optional<ImageBox> past = track.BoxAt(then.frame);
@@ -198,7 +238,8 @@ ImageBox DynamicFilter::CarryBox(const ImageBox& box, const PastView& then, cons
   }
   std::vector<Eigen::Vector2f> guesses;
   for (const Eigen::Vector2f& px : points) guesses.emplace_back(px + guess);
-  const std::vector<FlowPoint> flow = FollowPoints(then.image, work.view.image, points, guesses, flow_options_);
+  const std::vector<FlowPoint> flow =
+      FollowPoints(then.image, work.view.image, points, guesses, flow_options_);
   std::vector<Eigen::Vector2f> shifts;
   for (size_t i = 0; i < points.size(); ++i) {
     if (flow[i].found) shifts.emplace_back(flow[i].image_px - points[i]);
@@ -208,28 +249,41 @@ ImageBox DynamicFilter::CarryBox(const ImageBox& box, const PastView& then, cons
 
 // --- Motion
 
-void DynamicFilter::FollowCamera(const Rigid3d& T_last_now_predicted, Work& work, DynamicResult& result) {
+void DynamicFilter::FollowCamera(const Rigid3d& T_last_now_predicted, Work& work,
+                                 DynamicResult& result) {
   work.flow.assign(work.all.size(), {});
   if (past_.empty()) return;
-  const std::vector<Eigen::Vector2f> guesses = PredictInPast(camera_, work.features, work.all, T_last_now_predicted);
-  work.flow = FollowPoints(work.view.image, past_.back().image, work.features.image_px, guesses, flow_options_);
-  // Points that were on an object in the last image do not take part.
+  const std::vector<Eigen::Vector2f> guesses =
+      PredictInPast(camera_, work.features, work.all, T_last_now_predicted);
+  work.flow = FollowPoints(work.view.image, past_.back().image, work.features.image_px, guesses,
+                           flow_options_);
+  // Points that were on a person or the like do not take part. Those on movers of other classes do:
+  // they are movers only by the camera's motion, which must not depend on them in turn.
   std::vector<int> still;
   std::vector<FlowPoint> flow;
   for (const int i : work.all) {
-    const bool on_object = std::any_of(tracks_.tracks().begin(), tracks_.tracks().end(), [&](const ObjectTrack& track) {
-      return track.Removes() && track.mask.Covers(work.flow[i].image_px);
-    });
+    const bool on_object = std::any_of(
+        tracks_.tracks().begin(), tracks_.tracks().end(), [&](const ObjectTrack& track) {
+          return track.kind == ObjectKind::kKnown && track.Removes() &&
+                 track.mask.Covers(work.flow[i].image_px);
+        });
     if (on_object) continue;
     still.push_back(i);
     flow.push_back(work.flow[i]);
   }
-  const CameraMotion motion = EstimateCameraMotion(camera_, levels_, work.features, still, flow, T_last_now_predicted,
-                                                   seed_ + static_cast<uint64_t>(work.frame.id.value()));
+  const CameraMotion motion =
+      EstimateCameraMotion(camera_, levels_, work.features, still, flow, T_last_now_predicted,
+                           seed_ + static_cast<uint64_t>(work.frame.id.value()));
   result.camera_motion_reliable = motion.reliable;
   // What took coordinates of the last camera into the past now takes those of this one.
   const Rigid3d T_last_now = options_.compensate_camera_motion ? motion.T_past_now : Rigid3d();
-  for (PastView& view : past_) view.T_past_now = view.T_past_now * T_last_now;
+  const Vector6d twist = T_last_now.Log();
+  for (PastView& view : past_) {
+    view.T_past_now = view.T_past_now * T_last_now;
+    view.unsteadiness = twist - last_motion_;
+  }
+  last_motion_ = twist;
+  steady_ = twist.tail<3>().norm() * camera_.fx < options_.background.max_turn_px;
 }
 
 const PastView* DynamicFilter::ViewBefore(double time_s) const {
@@ -244,12 +298,16 @@ void DynamicFilter::TestMotions(Work& work) {
   work.motion.assign(work.all.size(), PointMotion::kUntested);
   work.slow_motion = work.motion;
   if (past_.empty()) return;
-  work.motion = TestMotion(camera_, levels_, work.features, work.all, work.flow, past_.back(), options_.motion);
+  work.motion = TestMotion(camera_, levels_, work.features, work.all, work.flow, past_.back(),
+                           options_.motion);
   const PastView* before = ViewBefore(work.frame.time_s - options_.motion.look_back_s);
   if (!before || before == &past_.back()) return;
-  const std::vector<Eigen::Vector2f> guesses = PredictInPast(camera_, work.features, work.all, before->T_past_now);
-  const std::vector<FlowPoint> flow = FollowPoints(work.view.image, before->image, work.features.image_px, guesses, flow_options_);
-  work.slow_motion = TestMotion(camera_, levels_, work.features, work.all, flow, *before, options_.motion);
+  const std::vector<Eigen::Vector2f> guesses =
+      PredictInPast(camera_, work.features, work.all, before->T_past_now);
+  const std::vector<FlowPoint> flow =
+      FollowPoints(work.view.image, before->image, work.features.image_px, guesses, flow_options_);
+  work.slow_motion =
+      TestMotion(camera_, levels_, work.features, work.all, flow, *before, options_.motion);
 }
 
 // --- Objects
@@ -266,16 +324,20 @@ void DynamicFilter::MoveTracks(const Work& work) {
       if (work.flow[i].found && track.mask.Covers(work.flow[i].image_px))
         shifts.emplace_back(work.features.image_px[i] - work.flow[i].image_px);
     }
-    const Eigen::Vector2f by_camera = CameraShift(camera_, last.T_past_now.Inverse(), Centre(track.box), track.mask.depth_m);
+    const Eigen::Vector2f by_camera =
+        CameraShift(camera_, last.T_past_now.Inverse(), Centre(track.box), track.mask.depth_m);
     const std::optional<Eigen::Vector2f> seen = MedianOf(shifts, kEnough);
     const Eigen::Vector2f shift = seen.value_or(by_camera + track.own_velocity_px_s * dt_s);
-    if (seen) track.own_velocity_px_s = kKeep * track.own_velocity_px_s + (1 - kKeep) * (*seen - by_camera) / dt_s;
+    if (seen)
+      track.own_velocity_px_s =
+          kKeep * track.own_velocity_px_s + (1 - kKeep) * (*seen - by_camera) / dt_s;
     track.box = Moved(track.box, shift);
   }
   // An object that has left the image.
   std::erase_if(tracks_.tracks(), [&](const ObjectTrack& track) {
     constexpr float kVisible_px = 8;
-    return track.box.x1 < kVisible_px || track.box.y1 < kVisible_px || track.box.x0 > static_cast<float>(camera_.width) - kVisible_px ||
+    return track.box.x1 < kVisible_px || track.box.y1 < kVisible_px ||
+           track.box.x0 > static_cast<float>(camera_.width) - kVisible_px ||
            track.box.y0 > static_cast<float>(camera_.height) - kVisible_px;
   });
 }
@@ -288,20 +350,20 @@ void DynamicFilter::GrowMasks(const Work& work) {
     }
     std::optional<float> expected_m;
     if (track.mask.depth_m > 0) expected_m = track.mask.depth_m;
-    track.mask = MaskInBox(work.view.depth, track.box, expected_m, options_.mask);
+    track.mask = MaskInBox(work.view.depth, work.background, track.box, expected_m, options_.mask);
   }
 }
 
-void DynamicFilter::FindMovers(Work& work) {
+void DynamicFilter::FindMovers(const Work& work) {
   std::vector<TestedPoint> points;
   for (const int i : work.all) {
     if (work.motion[i] == PointMotion::kUntested) continue;
-    const bool on_object = std::any_of(tracks_.tracks().begin(), tracks_.tracks().end(), [&](const ObjectTrack& track) {
-      return track.confirmations > 1 && track.mask.Covers(work.features.image_px[i]);
-    });
+    const bool on_object = std::any_of(
+        tracks_.tracks().begin(), tracks_.tracks().end(), [&](const ObjectTrack& track) {
+          return track.confirmations > 1 && track.mask.Covers(work.features.image_px[i]);
+        });
     if (on_object) continue;
-    const bool moves = Moves(work.motion[i]) || (Moves(work.slow_motion[i]) && work.motion[i] != PointMotion::kStatic);
-    points.push_back({work.features.image_px[i], work.features.depth_m[i], moves});
+    points.push_back({work.features.image_px[i], work.features.depth_m[i], Moves(work.motion[i])});
   }
   for (const std::vector<int>& cluster : FindMovingClusters(points, options_.tracks)) {
     std::vector<Eigen::Vector2f> seeds;
@@ -311,13 +373,63 @@ void DynamicFilter::FindMovers(Work& work) {
       const Eigen::Vector2f& px = points[k].image_px;
       seeds.push_back(px);
       if (points[k].depth_m > 0) depths.push_back(points[k].depth_m);
-      box = {std::min(box.x0, px.x()), std::min(box.y0, px.y()), std::max(box.x1, px.x()), std::max(box.y1, px.y())};
+      box = {std::min(box.x0, px.x()), std::min(box.y0, px.y()), std::max(box.x1, px.x()),
+             std::max(box.y1, px.y())};
     }
     if (depths.size() < 3) continue;
-    std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
+    std::nth_element(depths.begin(),
+                     depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
     const float margin_px = 12 + 0.25f * std::max(box.width(), box.height());
     box = {box.x0 - margin_px, box.y0 - margin_px, box.x1 + margin_px, box.y1 + margin_px};
-    ObjectMask mask = MaskAroundPoints(work.view.depth, seeds, depths[depths.size() / 2], box, options_.mask);
+    ObjectMask mask = MaskAroundPoints(work.view.depth, work.background, seeds,
+                                       depths[depths.size() / 2], box, options_.mask);
+    const ImageBox around = mask.box;
+    tracks_.TakeMover(around, std::move(mask), work.frame.time_s);
+  }
+}
+
+// Connected blocks through which the camera has seen before, outside the masks.
+void DynamicFilter::FindIntruders(const Work& work) {
+  if (work.background.rows() == 0) return;
+  constexpr int kCells = BlockVerdicts::kBlockCells;
+  constexpr auto kBlock_px = static_cast<float>(kCells * CoarseDepth::kCellSize);
+  cv::Mat1b intruders(work.background.rows(), work.background.cols(), static_cast<uint8_t>(0));
+  for (int r = 0; r < intruders.rows; ++r) {
+    for (int c = 0; c < intruders.cols; ++c) {
+      if (work.background.At(r, c) != BlockVerdict::kIntruder) continue;
+      const cv::Point cell(c * kCells, r * kCells);
+      const bool known = std::any_of(
+          tracks_.tracks().begin(), tracks_.tracks().end(), [&](const ObjectTrack& track) {
+            return track.kind != ObjectKind::kUnknown && track.Removes() && !track.mask.empty() &&
+                   track.mask.cells(cell) != 0;
+          });
+      if (!known) intruders(r, c) = 255;
+    }
+  }
+  cv::Mat labels, stats, centres;
+  const int count = cv::connectedComponentsWithStats(intruders, labels, stats, centres, 4, CV_32S);
+  for (int label = 1; label < count; ++label) {
+    if (stats.at<int>(label, cv::CC_STAT_AREA) < options_.background.min_intruder_blocks) continue;
+    std::vector<Eigen::Vector2f> seeds;
+    std::vector<float> depths;
+    for (int r = 0; r < labels.rows; ++r) {
+      for (int c = 0; c < labels.cols; ++c) {
+        if (labels.at<int>(r, c) != label) continue;
+        seeds.emplace_back((static_cast<float>(c) + 0.25f) * kBlock_px,
+                           (static_cast<float>(r) + 0.25f) * kBlock_px);
+        depths.push_back(work.view.depth.At(seeds.back()));
+      }
+    }
+    std::nth_element(depths.begin(),
+                     depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
+    const auto x = static_cast<float>(stats.at<int>(label, cv::CC_STAT_LEFT)) * kBlock_px,
+               y = static_cast<float>(stats.at<int>(label, cv::CC_STAT_TOP)) * kBlock_px;
+    const auto w = static_cast<float>(stats.at<int>(label, cv::CC_STAT_WIDTH)) * kBlock_px,
+               h = static_cast<float>(stats.at<int>(label, cv::CC_STAT_HEIGHT)) * kBlock_px;
+    const float margin_px = 16 + 0.5f * std::max(w, h);
+    ObjectMask mask = MaskAroundPoints(
+        work.view.depth, work.background, seeds, depths[depths.size() / 2],
+        {x - margin_px, y - margin_px, x + w + margin_px, y + h + margin_px}, options_.mask);
     const ImageBox around = mask.box;
     tracks_.TakeMover(around, std::move(mask), work.frame.time_s);
   }
@@ -327,9 +439,19 @@ void DynamicFilter::GatherEvidence(const Work& work) {
   for (ObjectTrack& track : tracks_.tracks()) {
     track.evidence = {};
     for (const int i : work.all) {
-      if (work.motion[i] == PointMotion::kUntested || !track.mask.Covers(work.features.image_px[i])) continue;
+      if (work.motion[i] == PointMotion::kUntested || !track.mask.Covers(work.features.image_px[i]))
+        continue;
       ++track.evidence.tested;
       track.evidence.moving += Moves(work.motion[i]) || Moves(work.slow_motion[i]);
+    }
+    if (track.mask.empty() || work.background.rows() == 0) continue;
+    for (int r = 0; r < work.background.rows(); ++r) {
+      for (int c = 0; c < work.background.cols(); ++c) {
+        if (track.mask.cells(r * BlockVerdicts::kBlockCells, c * BlockVerdicts::kBlockCells) == 0)
+          continue;
+        ++track.evidence.blocks;
+        track.evidence.new_blocks += work.background.At(r, c) == BlockVerdict::kIntruder;
+      }
     }
   }
 }
@@ -343,7 +465,8 @@ void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
   for (const ObjectTrack& track : tracks_.tracks()) {
     if (track.mask.empty() || track.mask.area > options_.mask.max_image_share * cells) continue;
     if (track.Removes()) result.mask |= track.mask.cells;
-    if (track.kind == ObjectKind::kKnown && track.state == MotionState::kStatic) settled |= track.mask.cells;
+    if (track.kind == ObjectKind::kKnown && track.state == MotionState::kStatic)
+      settled |= track.mask.cells;
   }
   for (const int i : work.all) {
     const Eigen::Vector2f& px = work.features.image_px[i];
@@ -351,12 +474,12 @@ void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
     if (result.mask(cell) != 0) {
       result.labels.Set(i, PointReason::kObject, kOnObject);
     } else if (result.camera_motion_reliable && Moves(work.motion[i])) {
-      const PointReason reason = work.motion[i] == PointMotion::kMovesInDepth ? PointReason::kDepth : PointReason::kFlow;
+      const PointReason reason =
+          work.motion[i] == PointMotion::kMovesInDepth ? PointReason::kDepth : PointReason::kFlow;
       result.labels.Set(i, reason, Moves(work.slow_motion[i]) ? kMovesTwice : kMovesOnce);
     } else if (settled(cell) != 0) {
-      result.labels.Set(i, PointReason::kSettled, static_cast<float>(options_.tracks.settled_weight));
-    } else if (result.camera_motion_reliable && Moves(work.slow_motion[i])) {
-      result.labels.static_probability[i] = kMovedSlowly;
+      result.labels.Set(i, PointReason::kSettled,
+                        static_cast<float>(options_.tracks.settled_weight));
     }
   }
   if (options_.weights) return;
@@ -367,8 +490,11 @@ void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
 // Rather than losing track: those that do not move themselves first, and never those that do.
 void DynamicFilter::ReadmitPoints(const Work& work, DynamicResult& result) const {
   const PointLabels& labels = result.labels;
-  const auto used = [&](int i) { return labels.static_probability[i] >= options_.min_static_probability; };
-  int missing = options_.min_static_features - static_cast<int>(std::count_if(work.all.begin(), work.all.end(), used));
+  const auto used = [&](int i) {
+    return labels.static_probability[i] >= options_.min_static_probability;
+  };
+  int missing = options_.min_static_features -
+                static_cast<int>(std::count_if(work.all.begin(), work.all.end(), used));
   if (missing <= 0) return;
   for (const PointMotion wanted : {PointMotion::kStatic, PointMotion::kUntested}) {
     for (const int i : work.all) {
@@ -393,21 +519,38 @@ void DynamicFilter::Describe(const Work& work, DynamicResult& result) const {
                               .moving_share = track.evidence.MovingShare()});
   }
   if (!result.mask.empty())
-    result.mask_share = static_cast<double>(cv::countNonZero(result.mask)) / static_cast<double>(result.mask.total());
+    result.mask_share = static_cast<double>(cv::countNonZero(result.mask)) /
+                        static_cast<double>(result.mask.total());
 }
 
 void DynamicFilter::Remember(Work& work, const DynamicResult& result) {
   mask_share_ = result.mask_share;
+  last_mask_ = result.mask;
   tracks_.RememberBoxes(work.frame.id, static_cast<size_t>(options_.history_frames));
   past_.push_back(std::move(work.view));
   if (past_.size() > static_cast<size_t>(options_.history_frames)) past_.pop_front();
+}
+
+void DynamicFilter::TakePose(const std::optional<Rigid3d>& T_cw, bool same_world) {
+  T_cw_last_ = T_cw;
+  if (!same_world) {
+    // The camera is where it was, only the numbers have changed.
+    if (T_cw && T_cw_expected_) {
+      background_.ChangeWorld(T_cw_expected_->Inverse() * *T_cw);
+    } else {
+      background_.Forget();
+    }
+  }
+  if (T_cw && !past_.empty())
+    background_.Remember(past_.back().time_s, past_.back().depth, last_mask_, *T_cw, steady_);
 }
 
 double DynamicFilter::FeatureFactor() const {
   return std::min(options_.max_feature_factor, 1 / std::max(0.1, 1 - mask_share_));
 }
 
-FrameFeatures KeepStatic(const FrameFeatures& features, const PointLabels& labels, double min_static_probability, const Camera& camera) {
+FrameFeatures KeepStatic(const FrameFeatures& features, const PointLabels& labels,
+                         double min_static_probability, const Camera& camera) {
   FrameFeatures kept;
   for (int i = 0; i < features.size(); ++i) {
     if (labels.static_probability[i] < min_static_probability) continue;

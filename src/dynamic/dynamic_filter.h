@@ -1,4 +1,5 @@
-// Which points of an image belong to the static world: detector boxes, depth and motion together. Modes and rules: see DynamicOptions.
+// Which points of an image belong to the static world: detector boxes, depth and motion together.
+// Modes and rules: see DynamicOptions.
 #pragma once
 
 #include <deque>
@@ -6,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "dynamic/background.h"
 #include "dynamic/camera_motion.h"
 #include "dynamic/object_track.h"
 #include "dynamic/point_labels.h"
@@ -19,8 +21,8 @@ struct DynamicObject {
   std::string name;  // of the class; "mover" when it is not known
   ObjectKind kind = ObjectKind::kUnknown;
   MotionState state = MotionState::kMoving;
-  bool removed = false;    // its points are not used
-  bool bridged = false;    // not detected in the newest detections, but followed
+  bool removed = false;  // its points are not used
+  bool bridged = false;  // not detected in the newest detections, but followed
   float score = 0;
   ImageBox box;
   double moving_share = 0;
@@ -28,11 +30,11 @@ struct DynamicObject {
 
 // What the filter says about one frame.
 struct DynamicResult {
-  PointLabels labels;                   // per feature given to Classify()
+  PointLabels labels;  // per feature given to Classify()
   std::vector<DynamicObject> objects;
-  cv::Mat1b mask;                       // cells of CoarseDepth: 255 = removed
-  double mask_share = 0;                // of the image
-  int detection_age = -1;               // frames between the newest detections and this frame; -1: none yet
+  cv::Mat1b mask;          // cells of CoarseDepth: 255 = removed
+  double mask_share = 0;   // of the image
+  int detection_age = -1;  // frames between the newest detections and this frame; -1: none yet
   bool camera_motion_reliable = false;
 };
 
@@ -40,30 +42,39 @@ struct DynamicResult {
 class DynamicFilter {
  public:
   // `class_names`: of the detector whose results Classify() will get; empty without one.
-  static StatusOr<std::unique_ptr<DynamicFilter>> Create(const DynamicOptions& options, const Camera& camera, const ScaleLevels& levels,
-                                                         const std::vector<std::string>& class_names, uint64_t seed);
+  static StatusOr<std::unique_ptr<DynamicFilter>> Create(
+      const DynamicOptions& options, const Camera& camera, const ScaleLevels& levels,
+      const std::vector<std::string>& class_names, uint64_t seed);
 
-  // `T_last_now_predicted`: takes coordinates of the camera now to those at the last frame. `detections`: the newest ones, of this frame or
-  // of an earlier one; null when there are none yet. Detections that were given before are recognised by their frame.
-  DynamicResult Classify(const RgbdFrame& frame, const FrameFeatures& features, const Rigid3d& T_last_now_predicted,
-                         const Detections* detections);
+  // `T_last_now_predicted`: takes coordinates of the camera now to those at the last frame.
+  // `detections`: the newest ones, of this frame or of an earlier one; null when there are none
+  // yet. Detections that were given before are recognised by their frame.
+  DynamicResult Classify(const RgbdFrame& frame, const FrameFeatures& features,
+                         const Rigid3d& T_last_now_predicted, const Detections* detections);
 
-  // How many times as many points as usual the next image needs so that the static part keeps its budget.
+  // Where tracking has found the camera for the frame that was classified last; nothing when it is
+  // lost. `same_world`: the map was not corrected since the frame before.
+  void TakePose(const std::optional<Rigid3d>& T_cw, bool same_world);
+
+  // How many times as many points as usual the next image needs so that the static part keeps its
+  // budget.
   double FeatureFactor() const;
 
  private:
-  DynamicFilter(const DynamicOptions& options, const Camera& camera, const ScaleLevels& levels, ClassRoles roles, uint64_t seed);
+  DynamicFilter(const DynamicOptions& options, const Camera& camera, const ScaleLevels& levels,
+                ClassRoles roles, uint64_t seed);
 
   // The frame on its way through the filter.
   struct Work {
     const RgbdFrame& frame;
     const FrameFeatures& features;
-    std::vector<int> all;                // every feature
-    PastView view;                       // the frame itself, as later frames will need it
-    std::vector<FlowPoint> flow;         // of each feature into the last image
-    std::vector<PointMotion> motion;     // against the last image
+    std::vector<int> all;                  // every feature
+    BlockVerdicts background;              // against older depth
+    PastView view;                         // the frame itself, as later frames will need it
+    std::vector<FlowPoint> flow;           // of each feature into the last image
+    std::vector<PointMotion> motion;       // against the last image
     std::vector<PointMotion> slow_motion;  // against an older one
-    std::vector<Detection> detections;   // in place for this frame
+    std::vector<Detection> detections;     // in place for this frame
     bool has_detections = false;
   };
 
@@ -78,7 +89,8 @@ class DynamicFilter {
   void TestMotions(Work& work);
   void MoveTracks(const Work& work);
   void GrowMasks(const Work& work);
-  void FindMovers(Work& work);
+  void FindMovers(const Work& work);
+  void FindIntruders(const Work& work);
   void GatherEvidence(const Work& work);
   void LabelPoints(const Work& work, DynamicResult& result) const;
   void ReadmitPoints(const Work& work, DynamicResult& result) const;
@@ -93,11 +105,19 @@ class DynamicFilter {
   FlowOptions flow_options_;
   ObjectTracks tracks_;
   std::deque<PastView> past_;  // newest last
-  FrameId last_detections_;    // the frame of the newest detections taken
-  double mask_share_ = 0;      // of the last frame
+  Background background_;
+  Vector6d last_motion_ = Vector6d::Zero();  // twist from the last frame to the present one
+  bool steady_ = false;                      // the camera turns slowly
+  cv::Mat1b last_mask_;
+  std::optional<Rigid3d> T_cw_last_;      // of the last frame, by tracking
+  std::optional<Rigid3d> T_cw_expected_;  // of the present one, by its motion since
+  FrameId last_detections_;               // the frame of the newest detections taken
+  double mask_share_ = 0;                 // of the last frame
 };
 
-// The features that are static enough to be used, with their static probability as weight, and for each its index in `features`.
-FrameFeatures KeepStatic(const FrameFeatures& features, const PointLabels& labels, double min_static_probability, const Camera& camera);
+// The features that are static enough to be used, with their static probability as weight, and for
+// each its index in `features`.
+FrameFeatures KeepStatic(const FrameFeatures& features, const PointLabels& labels,
+                         double min_static_probability, const Camera& camera);
 
 }  // namespace msf

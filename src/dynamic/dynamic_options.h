@@ -14,18 +14,60 @@ struct MotionTestOptions {
   double min_residual_px = 1.5;
   double sigmas = 3;
   double flow_sigma_px = 0.35;
+  double flow_share = 0.08;
+  double unsteady_share = 0.5;
+  double typical_share = 0.3;
   double depth_sigma_m = 0.006;
   double depth_sigma_per_m2 = 0.004;
   double look_back_s = 0.2;
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
-    visit("min_residual_px", min_residual_px, "L: flow left after the camera's motion is taken out, px; less never counts as motion");
+    visit("min_residual_px", min_residual_px,
+          "L: flow left after the camera's motion is taken out, px; less never counts as motion");
     visit("sigmas", sigmas, "motion must exceed the expected noise this many times");
     visit("flow_sigma_px", flow_sigma_px, "noise of the flow of a point of pyramid level 0, px");
+    visit("flow_share", flow_share,
+          "part of the flow that the camera causes which may be wrong: the shutter rolls, colour "
+          "and depth differ in time");
+    visit("unsteady_share", unsteady_share,
+          "part of the change of the camera's motion from image to image that the rolling shutter "
+          "turns into flow");
+    visit("typical_share", typical_share,
+          "where the median point uses more than this share of its tolerance, all tolerances grow "
+          "in proportion");
     visit("depth_sigma_m", depth_sigma_m, "noise of depth, m, at depth 0 ...");
-    visit("depth_sigma_per_m2", depth_sigma_per_m2, "... and its growth with the square of depth, 1/m");
-    visit("look_back_s", look_back_s, "slow motion is looked for against an image so much older, s");
+    visit("depth_sigma_per_m2", depth_sigma_per_m2,
+          "... and its growth with the square of depth, 1/m");
+    visit("look_back_s", look_back_s,
+          "slow motion is looked for against an image so much older, s");
+  }
+};
+
+// Comparison of depth with that of older views.
+struct BackgroundOptions {
+  double keep_every_s = 0.15;
+  double youngest_s = 0.6;
+  double oldest_s = 3;
+  int num_views = 4;
+  double tolerance_m = 0.025;
+  double tolerance_per_m2 = 0.01;
+  double max_turn_px = 6;
+  int min_intruder_blocks = 14;
+
+  template <typename Visitor>
+  void Visit(Visitor& visit) {
+    visit("keep_every_s", keep_every_s, "a view is kept so often, s");
+    visit("youngest_s", youngest_s, "views that are compared are at least so old, s ...");
+    visit("oldest_s", oldest_s, "... and at most so old, s");
+    visit("num_views", num_views, "views that are compared; 0: none");
+    visit("tolerance_m", tolerance_m, "depths differ by more than this, m, at depth 0 ...");
+    visit("tolerance_per_m2", tolerance_per_m2, "... and its growth with the square of depth, 1/m");
+    visit("max_turn_px", max_turn_px,
+          "views taken while the camera turns faster, px per image, do not tell what is new: their "
+          "depth is displaced");
+    visit("min_intruder_blocks", min_intruder_blocks,
+          "blocks (8 x 8 px) of something new that make an object of unknown class");
   }
 };
 
@@ -41,13 +83,17 @@ struct ObjectMaskOptions {
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
-    visit("depth_band_m", depth_band_m, "an object reaches so far before and behind its typical depth, m");
-    visit("max_step_share", max_step_share, "neighbouring cells of an object differ in depth by at most this share of it ...");
+    visit("depth_band_m", depth_band_m,
+          "an object reaches so far before and behind its typical depth, m");
+    visit("max_step_share", max_step_share,
+          "neighbouring cells of an object differ in depth by at most this share of it ...");
     visit("max_step_m", max_step_m, "... plus this, m");
     visit("box_margin", box_margin, "an object may reach beyond its box by this share of the box");
     visit("grow_px", grow_px, "the mask is grown by so much, px");
-    visit("grow_without_depth_px", grow_without_depth_px, "and so far over pixels without depth, px");
-    visit("min_depth_share", min_depth_share, "with less valid depth inside a box the whole box is the mask");
+    visit("grow_without_depth_px", grow_without_depth_px,
+          "and so far over pixels without depth, px");
+    visit("min_depth_share", min_depth_share,
+          "with less valid depth inside a box the whole box is the mask");
     visit("max_image_share", max_image_share, "larger masks are distrusted");
   }
 };
@@ -55,40 +101,59 @@ struct ObjectMaskOptions {
 struct ObjectTrackOptions {
   double min_iou = 0.25;
   double bridge_s = 0.7;
+  double bridge_still_s = 2.5;
   double start_score = 0.25;
   double potential_score = 0.4;
   double continue_score = 0.1;
   double settle_s = 3;
+  double mover_settle_s = 0.25;
   double moving_share = 0.25;
   double settled_share = 0.08;
   int min_tested_points = 5;
   double settled_weight = 0.35;
-  int min_cluster_points = 6;
+  double mover_share = 0.5;
+  double new_share = 0.35;
+  int min_cluster_points = 8;
   double cluster_px = 40;
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
     visit("min_iou", min_iou, "overlap with which a detection continues a track");
     visit("bridge_s", bridge_s, "an object that is detected no more is followed for so long, s");
+    visit("bridge_still_s", bridge_still_s,
+          "the same for one that was detected often and still looks the same in depth, s");
     visit("start_score", start_score, "score with which a known dynamic class starts a track");
     visit("potential_score", potential_score, "the same for a potentially dynamic class");
     visit("continue_score", continue_score, "score with which a detection continues a track");
-    visit("settle_s", settle_s, "an object that has not moved for so long counts as static, s");
-    visit("moving_share", moving_share, "share of its points that fail the motion test with which an object moves");
+    visit("settle_s", settle_s,
+          "an object of a known dynamic class that has not moved for so long counts as static, s");
+    visit("mover_settle_s", mover_settle_s, "the same for other objects, s");
+    visit("moving_share", moving_share,
+          "share of its points that fail the motion test with which an object moves");
     visit("settled_share", settled_share, "share below which it rests");
-    visit("min_tested_points", min_tested_points, "points without which there is no verdict on an object");
-    visit("settled_weight", settled_weight, "static probability of the points of a known dynamic object that rests");
-    visit("min_cluster_points", min_cluster_points, "moving points that make an object of unknown class");
+    visit("min_tested_points", min_tested_points,
+          "points without which there is no verdict on an object");
+    visit("settled_weight", settled_weight,
+          "static probability of the points of a known dynamic object that rests");
+    visit("mover_share", mover_share,
+          "the same for objects of potentially dynamic or unknown class");
+    visit("new_share", new_share,
+          "an object that stands where the camera has seen through before, with this share of it, "
+          "has moved");
+    visit("min_cluster_points", min_cluster_points,
+          "moving points that make an object of unknown class");
     visit("cluster_px", cluster_px, "distance between neighbouring points of such an object, px");
   }
 };
 
 struct DynamicOptions {
   std::string mode = "full";
-  std::vector<std::string> known_classes = {"person", "bird",  "cat",     "dog",   "horse", "sheep",      "cow",
-                                            "elephant", "bear", "bicycle", "car",  "motorcycle", "bus", "train", "truck"};
-  std::vector<std::string> potential_classes = {"chair", "couch", "potted plant", "bottle", "tv",  "laptop", "book",
-                                                "cup",   "suitcase", "backpack", "handbag", "umbrella", "sports ball"};
+  std::vector<std::string> known_classes = {"person", "bird",       "cat",      "dog",   "horse",
+                                            "sheep",  "cow",        "elephant", "bear",  "bicycle",
+                                            "car",    "motorcycle", "bus",      "train", "truck"};
+  std::vector<std::string> potential_classes = {
+      "chair", "couch",    "potted plant", "bottle",  "tv",       "laptop",     "book",
+      "cup",   "suitcase", "backpack",     "handbag", "umbrella", "sports ball"};
   double paper_flow_px = 1.5;
   int paper_window_px = 5;
   bool depth_split = true;
@@ -101,27 +166,35 @@ struct DynamicOptions {
   double max_feature_factor = 1.6;
   int history_frames = 16;
   MotionTestOptions motion;
+  BackgroundOptions background;
   ObjectMaskOptions mask;
   ObjectTrackOptions tracks;
   FlowOptions flow;
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
-    visit("mode", mode, "off; boxes: drop what is in a box; paper: boxes, then raw flow above paper_flow_px; full");
+    visit(
+        "mode", mode,
+        "off; boxes: drop what is in a box; paper: boxes, then raw flow above paper_flow_px; full");
     visit("known_classes", known_classes, "classes that move by themselves");
     visit("potential_classes", potential_classes, "classes that people move");
     visit("paper_flow_px", paper_flow_px, "mode paper: L, largest flow of a static point, px");
     visit("paper_window_px", paper_window_px, "mode paper: side of the flow's window, px");
     visit("depth_split", depth_split, "inside a box only the near cluster is the object");
     visit("bridging", bridging, "follow objects through missed and late detections");
-    visit("compensate_camera_motion", compensate_camera_motion, "test the flow that is left after the camera's motion");
+    visit("compensate_camera_motion", compensate_camera_motion,
+          "test the flow that is left after the camera's motion");
     visit("weights", weights, "static probability of points as weight; else yes or no");
     visit("unknown_movers", unknown_movers, "moving clusters outside all boxes are objects, too");
-    visit("min_static_features", min_static_features, "with fewer static points the least suspicious others are readmitted");
-    visit("min_static_probability", min_static_probability, "points less likely static are not used");
-    visit("max_feature_factor", max_feature_factor, "so many times the points are extracted at most where masks cover the image");
+    visit("min_static_features", min_static_features,
+          "with fewer static points the least suspicious others are readmitted");
+    visit("min_static_probability", min_static_probability,
+          "points less likely static are not used");
+    visit("max_feature_factor", max_feature_factor,
+          "so many times the points are extracted at most where masks cover the image");
     visit("history_frames", history_frames, "images kept, to place late detections");
     visit("motion", motion, "");
+    visit("background", background, "");
     visit("mask", mask, "");
     visit("tracks", tracks, "");
     visit("flow", flow, "");

@@ -9,15 +9,19 @@ namespace {
 constexpr float kSimilarDepth_m = 0.3f;
 constexpr double kMostMove = 0.5;
 
-bool SimilarDepth(float a_m, float b_m) { return a_m <= 0 || b_m <= 0 || std::abs(a_m - b_m) < kSimilarDepth_m; }
+bool SimilarDepth(float a_m, float b_m) {
+  return a_m <= 0 || b_m <= 0 || std::abs(a_m - b_m) < kSimilarDepth_m;
+}
 
-std::vector<int> Collect(const std::vector<TestedPoint>& points, std::vector<int>& left, double cluster_px) {
+std::vector<int> Collect(const std::vector<TestedPoint>& points, std::vector<int>& left,
+                         double cluster_px) {
   std::vector<int> cluster = {left.back()};
   left.pop_back();
   for (size_t next = 0; next < cluster.size(); ++next) {
     const TestedPoint& point = points[cluster[next]];
     const auto near = std::stable_partition(left.begin(), left.end(), [&](int i) {
-      return (points[i].image_px - point.image_px).norm() >= cluster_px || !SimilarDepth(points[i].depth_m, point.depth_m);
+      return (points[i].image_px - point.image_px).norm() >= cluster_px ||
+             !SimilarDepth(points[i].depth_m, point.depth_m);
     });
     cluster.insert(cluster.end(), near, left.end());
     left.erase(near, left.end());
@@ -41,8 +45,10 @@ bool MostMoveWithin(const std::vector<TestedPoint>& points, const std::vector<in
   }
   int tested = 0, moving = 0;
   for (const TestedPoint& point : points) {
-    const bool inside = (point.image_px.array() >= low.array()).all() && (point.image_px.array() <= high.array()).all();
-    if (!inside || (point.depth_m > 0 && (point.depth_m < near_m || point.depth_m > far_m))) continue;
+    const bool inside = (point.image_px.array() >= low.array()).all() &&
+                        (point.image_px.array() <= high.array()).all();
+    if (!inside || (point.depth_m > 0 && (point.depth_m < near_m || point.depth_m > far_m)))
+      continue;
     ++tested;
     moving += point.moves;
   }
@@ -51,7 +57,8 @@ bool MostMoveWithin(const std::vector<TestedPoint>& points, const std::vector<in
 
 }  // namespace
 
-std::vector<std::vector<int>> FindMovingClusters(const std::vector<TestedPoint>& points, const ObjectTrackOptions& options) {
+std::vector<std::vector<int>> FindMovingClusters(const std::vector<TestedPoint>& points,
+                                                 const ObjectTrackOptions& options) {
   std::vector<int> left;
   for (size_t i = 0; i < points.size(); ++i) {
     if (points[i].moves) left.push_back(static_cast<int>(i));
@@ -59,7 +66,9 @@ std::vector<std::vector<int>> FindMovingClusters(const std::vector<TestedPoint>&
   std::vector<std::vector<int>> clusters;
   while (!left.empty()) {
     std::vector<int> cluster = Collect(points, left, options.cluster_px);
-    if (static_cast<int>(cluster.size()) < options.min_cluster_points || !MostMoveWithin(points, cluster)) continue;
+    if (static_cast<int>(cluster.size()) < options.min_cluster_points ||
+        !MostMoveWithin(points, cluster))
+      continue;
     std::sort(cluster.begin(), cluster.end());
     clusters.push_back(std::move(cluster));
   }

@@ -14,8 +14,10 @@ struct TestedPoint {
   bool moves = false;
 };
 
-// Groups of points that move, indices into `points`: neighbours are closer than `options.cluster_px` and, where both have depth, similar in it. At
-// least `options.min_cluster_points` in a group, and within its extent and depth most tested points move.
-std::vector<std::vector<int>> FindMovingClusters(const std::vector<TestedPoint>& points, const ObjectTrackOptions& options);
+// Groups of points that move, indices into `points`: neighbours are closer than
+// `options.cluster_px` and, where both have depth, similar in it. At least
+// `options.min_cluster_points` in a group, and within its extent and depth most tested points move.
+std::vector<std::vector<int>> FindMovingClusters(const std::vector<TestedPoint>& points,
+                                                 const ObjectTrackOptions& options);
 
 }  // namespace msf

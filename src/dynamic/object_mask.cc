@@ -70,8 +70,10 @@ float TypicalDepth(const DepthHistogram& histogram, std::optional<float> expecte
   return (static_cast<float>(chosen) + 0.5f) * kBinSize_m;
 }
 
-// Flood from the seeds over cells whose depth changes little from cell to cell and stays in the band.
-cv::Mat1b Flood(const CoarseDepth& depth, const std::vector<cv::Point>& seeds, const cv::Rect& limits, float depth_m,
+// Flood from the seeds over cells whose depth changes little from cell to cell and stays in the
+// band.
+cv::Mat1b Flood(const CoarseDepth& depth, const BlockVerdicts& background,
+                const std::vector<cv::Point>& seeds, const cv::Rect& limits, float depth_m,
                 const ObjectMaskOptions& options) {
   cv::Mat1b mask(depth.rows(), depth.cols(), static_cast<uint8_t>(0));
   std::vector<cv::Point> open = seeds;
@@ -81,11 +83,16 @@ cv::Mat1b Flood(const CoarseDepth& depth, const std::vector<cv::Point>& seeds, c
     open.pop_back();
     const float d = depth.metres()(cell);
     const auto step = static_cast<float>(options.max_step_share * d + options.max_step_m);
-    for (const cv::Point& side : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
+    for (const cv::Point& side :
+         {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
       const cv::Point next = cell + side;
-      if (!limits.contains(next) || mask(next) != 0) continue;
+      if (!limits.contains(next) || mask(next) != 0 ||
+          background.OfCell(next) == BlockVerdict::kConfirmed)
+        continue;
       const float other = depth.metres()(next);
-      if (other <= 0 || std::abs(other - d) > step || std::abs(other - depth_m) > static_cast<float>(options.depth_band_m)) continue;
+      if (other <= 0 || std::abs(other - d) > step ||
+          std::abs(other - depth_m) > static_cast<float>(options.depth_band_m))
+        continue;
       mask(next) = 255;
       open.push_back(next);
     }
@@ -102,13 +109,15 @@ void KeepLargePieces(cv::Mat1b& mask) {
   for (int i = 1; i < count; ++i) largest = std::max(largest, stats.at<int>(i, cv::CC_STAT_AREA));
   for (int r = 0; r < mask.rows; ++r) {
     for (int c = 0; c < mask.cols; ++c) {
-      if (mask(r, c) != 0 && stats.at<int>(labels.at<int>(r, c), cv::CC_STAT_AREA) * kSmallestShare < largest) mask(r, c) = 0;
+      if (mask(r, c) != 0 &&
+          stats.at<int>(labels.at<int>(r, c), cv::CC_STAT_AREA) * kSmallestShare < largest)
+        mask(r, c) = 0;
     }
   }
 }
 
-// Grows by whole cells, first everywhere, then over cells without depth: the band beside an object that the sensor's projector does
-// not reach shows the object's edge in the colour image.
+// Grows by whole cells, first everywhere, then over cells without depth: the band beside an object
+// that the sensor's projector does not reach shows the object's edge in the colour image.
 void Grow(cv::Mat1b& mask, const CoarseDepth& depth, const ObjectMaskOptions& options) {
   const cv::Mat cross = cv::getStructuringElement(cv::MORPH_CROSS, {3, 3});
   cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, cross);
@@ -142,35 +151,45 @@ ObjectMask WholeBox(const CoarseDepth& depth, const ImageBox& box) {
   return Finished(std::move(cells), 0);
 }
 
-ObjectMask MaskInBox(const CoarseDepth& depth, const ImageBox& box, std::optional<float> expected_depth_m,
-                     const ObjectMaskOptions& options) {
+ObjectMask MaskInBox(const CoarseDepth& depth, const BlockVerdicts& background, const ImageBox& box,
+                     std::optional<float> expected_depth_m, const ObjectMaskOptions& options) {
   const cv::Rect core = CellsOf(depth, Scaled(box, 0.6f, 0.8f));
   const DepthHistogram histogram(depth, core);
   if (histogram.valid < options.min_depth_share * histogram.cells) return WholeBox(depth, box);
   const float depth_m = TypicalDepth(histogram, expected_depth_m);
-  std::vector<cv::Point> seeds;
+  std::vector<cv::Point> seeds, confirmed;
   for (int r = core.y; r < core.br().y; ++r) {
     for (int c = core.x; c < core.br().x; ++c) {
       const float d = depth.metres()(r, c);
-      if (d > 0 && std::abs(d - depth_m) < kSeedBand_m) seeds.emplace_back(c, r);
+      if (d <= 0 || std::abs(d - depth_m) >= kSeedBand_m) continue;
+      (background.OfCell({c, r}) == BlockVerdict::kConfirmed ? confirmed : seeds)
+          .emplace_back(c, r);
     }
   }
+  // A person who has sat still and was not found for a while looks like background. The detector
+  // knows better.
+  static const BlockVerdicts kNothingKnown;
+  const bool has_sat_still = confirmed.size() > seeds.size();
+  if (has_sat_still) seeds.insert(seeds.end(), confirmed.begin(), confirmed.end());
   const auto margin = static_cast<float>(1 + 2 * options.box_margin);
-  cv::Mat1b cells = Flood(depth, seeds, CellsOf(depth, Scaled(box, margin, margin)), depth_m, options);
+  cv::Mat1b cells = Flood(depth, has_sat_still ? kNothingKnown : background, seeds,
+                          CellsOf(depth, Scaled(box, margin, margin)), depth_m, options);
   KeepLargePieces(cells);
   Grow(cells, depth, options);
   return Finished(std::move(cells), depth_m);
 }
 
-ObjectMask MaskAroundPoints(const CoarseDepth& depth, const std::vector<Eigen::Vector2f>& points_px, float depth_m,
+ObjectMask MaskAroundPoints(const CoarseDepth& depth, const BlockVerdicts& background,
+                            const std::vector<Eigen::Vector2f>& points_px, float depth_m,
                             const ImageBox& box, const ObjectMaskOptions& options) {
   std::vector<cv::Point> seeds;
   for (const Eigen::Vector2f& point : points_px) {
     const cv::Point cell = depth.CellOf(point.x(), point.y());
     const float d = depth.metres()(cell);
-    if (d > 0 && std::abs(d - depth_m) < static_cast<float>(options.depth_band_m)) seeds.push_back(cell);
+    const bool similar = d > 0 && std::abs(d - depth_m) < static_cast<float>(options.depth_band_m);
+    if (similar && background.OfCell(cell) != BlockVerdict::kConfirmed) seeds.push_back(cell);
   }
-  cv::Mat1b cells = Flood(depth, seeds, CellsOf(depth, box), depth_m, options);
+  cv::Mat1b cells = Flood(depth, background, seeds, CellsOf(depth, box), depth_m, options);
   Grow(cells, depth, options);
   return Finished(std::move(cells), depth_m);
 }

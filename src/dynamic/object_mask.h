@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "detection/detection.h"
+#include "dynamic/background.h"
 #include "dynamic/coarse_depth.h"
 #include "dynamic/dynamic_options.h"
 
@@ -19,21 +20,24 @@ struct ObjectMask {
   bool empty() const { return area == 0; }
   bool Covers(const Eigen::Vector2f& image_px) const {
     if (empty()) return false;
-    const int r = static_cast<int>(image_px.y()) / CoarseDepth::kCellSize, c = static_cast<int>(image_px.x()) / CoarseDepth::kCellSize;
+    const int r = static_cast<int>(image_px.y()) / CoarseDepth::kCellSize,
+              c = static_cast<int>(image_px.x()) / CoarseDepth::kCellSize;
     return r >= 0 && c >= 0 && r < cells.rows && c < cells.cols && cells(r, c) != 0;
   }
 };
 
-// The object in `box` (pixels). `expected_depth_m`: where it was a moment ago, if that is known. Without depth
-// in the box the box is the mask.
-ObjectMask MaskInBox(const CoarseDepth& depth, const ImageBox& box, std::optional<float> expected_depth_m,
-                     const ObjectMaskOptions& options);
+// The object in `box` (pixels), without what `background` has confirmed as static.
+// `expected_depth_m`: where it was a moment ago, if that is known. Without depth in the box the box
+// is the mask.
+ObjectMask MaskInBox(const CoarseDepth& depth, const BlockVerdicts& background, const ImageBox& box,
+                     std::optional<float> expected_depth_m, const ObjectMaskOptions& options);
 
 // All of `box`.
 ObjectMask WholeBox(const CoarseDepth& depth, const ImageBox& box);
 
 // The object around some of its points (pixels), whose typical depth is known, within `box`.
-ObjectMask MaskAroundPoints(const CoarseDepth& depth, const std::vector<Eigen::Vector2f>& points_px, float depth_m,
+ObjectMask MaskAroundPoints(const CoarseDepth& depth, const BlockVerdicts& background,
+                            const std::vector<Eigen::Vector2f>& points_px, float depth_m,
                             const ImageBox& box, const ObjectMaskOptions& options);
 
 }  // namespace msf

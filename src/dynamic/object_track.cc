@@ -1,16 +1,20 @@
 #include "dynamic/object_track.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace msf {
 namespace {
 
-constexpr int kConfirmationsOfAMover = 2;
-constexpr double kUncertainShare = 1.0 / 3;  // of settle_s: a resting object is uncertain after that
+constexpr int kConfirmationsOfAMover = 3;
+constexpr double kUncertainShare =
+    1.0 / 3;  // of settle_s: a resting object is uncertain after that
 
-// Share of the smaller box that lies in the other: a person cut by the border shrinks to a part of itself.
+// Share of the smaller box that lies in the other: a person cut by the border shrinks to a part of
+// itself.
 float Containment(const ImageBox& a, const ImageBox& b) {
-  const ImageBox common{std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+  const ImageBox common{std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1),
+                        std::min(a.y1, b.y1)};
   const float smaller = std::min(a.area(), b.area());
   return smaller > 0 ? common.area() / smaller : 0;
 }
@@ -19,18 +23,25 @@ float Containment(const ImageBox& a, const ImageBox& b) {
 
 const char* ToString(MotionState state) {
   switch (state) {
-    case MotionState::kMoving: return "moving";
-    case MotionState::kUncertain: return "uncertain";
-    case MotionState::kStatic: return "static";
+    case MotionState::kMoving:
+      return "moving";
+    case MotionState::kUncertain:
+      return "uncertain";
+    case MotionState::kStatic:
+      return "static";
   }
   return "unknown";
 }
 
 bool ObjectTrack::Removes() const {
   switch (kind) {
-    case ObjectKind::kKnown: return state != MotionState::kStatic;
-    case ObjectKind::kPotential: return state == MotionState::kMoving;
-    case ObjectKind::kUnknown: return confirmations >= kConfirmationsOfAMover && state != MotionState::kStatic;
+    case ObjectKind::kKnown:
+      return state != MotionState::kStatic;
+    case ObjectKind::kPotential:
+      return state == MotionState::kMoving;
+    case ObjectKind::kUnknown:
+      return confirmations >= kConfirmationsOfAMover && state != MotionState::kStatic &&
+             evidence.SpeaksForMotion();
   }
   return false;
 }
@@ -42,17 +53,26 @@ std::optional<ImageBox> ObjectTrack::BoxAt(FrameId frame) const {
   return std::nullopt;
 }
 
-ObjectTrack* ObjectTracks::FindMatch(const Detection& detection, ObjectKind kind, const std::vector<uint8_t>& taken) {
-  constexpr float kMostlyInside = 0.7f;
+double ObjectTracks::StartScore(ObjectKind kind) const {
+  return kind == ObjectKind::kKnown ? options_.start_score : options_.potential_score;
+}
+
+ObjectTrack* ObjectTracks::FindMatch(const Detection& detection, ObjectKind kind,
+                                     const std::vector<uint8_t>& taken) {
+  constexpr float kMostlyInside = 0.7f, kSameBox = 0.5f;
   ObjectTrack* best = nullptr;
   float best_overlap = 0;
   for (size_t t = 0; t < taken.size(); ++t) {
     ObjectTrack& track = tracks_[t];
     // A mover of unknown class may turn out to be of a known one.
-    if (taken[t] || (track.kind != kind && track.kind != ObjectKind::kUnknown)) continue;
+    const bool may_turn_out =
+        track.kind == ObjectKind::kUnknown && detection.score >= StartScore(kind);
+    if (taken[t] || (track.kind != kind && !may_turn_out)) continue;
     const float iou = IntersectionOverUnion(detection.box, track.box);
     const float contained = Containment(detection.box, track.box);
-    if (iou < options_.min_iou && contained < kMostlyInside) continue;
+    // A weak detection must look like the object itself.
+    const bool weak = detection.score < StartScore(kind);
+    if (weak ? iou < kSameBox : iou < options_.min_iou && contained < kMostlyInside) continue;
     const float overlap = iou + 0.1f * contained;
     if (overlap > best_overlap) {
       best_overlap = overlap;
@@ -62,24 +82,35 @@ ObjectTrack* ObjectTracks::FindMatch(const Detection& detection, ObjectKind kind
   return best;
 }
 
+// The same thing found twice: a second box of whatever class around it.
+bool ObjectTracks::IsEcho(const Detection& detection, const std::vector<uint8_t>& taken) const {
+  constexpr float kSameBox = 0.5f, kInside = 0.8f, kMuchWeaker = 0.7f;
+  for (size_t t = 0; t < taken.size(); ++t) {
+    const ObjectTrack& track = tracks_[t];
+    if (!taken[t] || track.score < detection.score) continue;
+    if (IntersectionOverUnion(detection.box, track.box) > kSameBox) return true;
+    if (detection.score < kMuchWeaker * track.score &&
+        Containment(detection.box, track.box) > kInside)
+      return true;
+  }
+  return false;
+}
+
 void ObjectTracks::TakeDetections(const std::vector<Detection>& detections, double time_s) {
   std::vector<uint8_t> taken(tracks_.size(), 0);
-  std::vector<ObjectTrack> started;
   for (const Detection& detection : detections) {
     const std::optional<ObjectKind> kind = roles_.KindOf(detection.class_id);
-    if (!kind || detection.score < options_.continue_score) continue;
+    if (!kind || detection.score < options_.continue_score || IsEcho(detection, taken)) continue;
     ObjectTrack* track = FindMatch(detection, *kind, taken);
-    if (track) {
-      taken[track - tracks_.data()] = 1;
-    } else {
-      const double needed = *kind == ObjectKind::kKnown ? options_.start_score : options_.potential_score;
-      if (detection.score < needed) continue;
-      ObjectTrack& fresh = started.emplace_back();
-      fresh.id = next_id_++;
-      fresh.state = *kind == ObjectKind::kKnown ? MotionState::kMoving : MotionState::kUncertain;
-      fresh.resting_since_s = time_s;
-      track = &fresh;
+    if (!track) {
+      if (detection.score < StartScore(*kind)) continue;
+      track = &tracks_.emplace_back();
+      track->id = next_id_++;
+      track->state = *kind == ObjectKind::kKnown ? MotionState::kMoving : MotionState::kUncertain;
+      track->resting_since_s = time_s;
+      taken.push_back(0);
     }
+    taken[track - tracks_.data()] = 1;
     track->kind = *kind;
     track->class_id = detection.class_id;
     track->score = detection.score;
@@ -87,14 +118,20 @@ void ObjectTracks::TakeDetections(const std::vector<Detection>& detections, doub
     track->confirmed_s = time_s;
     ++track->confirmations;
   }
-  tracks_.insert(tracks_.end(), std::make_move_iterator(started.begin()), std::make_move_iterator(started.end()));
+  // A track that only bridges where another one was detected has been mistaken.
+  for (size_t t = 0; t < taken.size(); ++t) {
+    const Detection as_detection{tracks_[t].class_id, 0, tracks_[t].box};
+    if (!taken[t] && IsEcho(as_detection, taken)) tracks_[t].confirmed_s = -1e9;
+  }
 }
 
 void ObjectTracks::TakeMover(const ImageBox& box, ObjectMask mask, double time_s) {
   ObjectTrack* track = nullptr;
   for (ObjectTrack& other : tracks_) {
     if (other.kind != ObjectKind::kUnknown) continue;
-    if (IntersectionOverUnion(box, other.box) >= options_.min_iou || Containment(box, other.box) > 0.5f) track = &other;
+    if (IntersectionOverUnion(box, other.box) >= options_.min_iou ||
+        Containment(box, other.box) > 0.5f)
+      track = &other;
   }
   if (!track) {
     track = &tracks_.emplace_back();
@@ -109,26 +146,34 @@ void ObjectTracks::TakeMover(const ImageBox& box, ObjectMask mask, double time_s
 
 void ObjectTracks::UpdateState(ObjectTrack& track, double time_s) const {
   const MotionEvidence& evidence = track.evidence;
+  if (evidence.NewShare() > options_.new_share) {
+    track.state = MotionState::kMoving;
+    track.confirmed_s = track.resting_since_s = time_s;
+    return;
+  }
   if (evidence.tested < options_.min_tested_points) {
     // No verdict: what is not known to rest does not begin to.
     if (track.state != MotionState::kStatic) track.resting_since_s = time_s;
     return;
   }
   const double share = evidence.MovingShare();
-  if (share >= options_.moving_share) {
+  const bool known = track.kind == ObjectKind::kKnown;
+  if (share >= options_.mover_share) track.confirmed_s = time_s;
+  if (share >= (known ? options_.moving_share : options_.mover_share)) {
     track.state = MotionState::kMoving;
     track.resting_since_s = time_s;
-    if (track.kind == ObjectKind::kUnknown || track.confirmations > 2) track.confirmed_s = time_s;
     return;
   }
-  if (share > options_.settled_share) {
+  // Between the two shares a person is neither: what does not rest yet does not begin to.
+  if (known && share > options_.settled_share) {
     if (track.state != MotionState::kStatic) track.resting_since_s = time_s;
     return;
   }
+  const double settle_s = known ? options_.settle_s : options_.mover_settle_s;
   const double resting_s = time_s - track.resting_since_s;
-  if (resting_s > options_.settle_s) {
+  if (resting_s > settle_s) {
     track.state = MotionState::kStatic;
-  } else if (resting_s > kUncertainShare * options_.settle_s && track.state == MotionState::kMoving) {
+  } else if (resting_s > kUncertainShare * settle_s && track.state == MotionState::kMoving) {
     track.state = MotionState::kUncertain;
   }
 }
@@ -137,8 +182,28 @@ void ObjectTracks::UpdateStates(double time_s) {
   for (ObjectTrack& track : tracks_) UpdateState(track, time_s);
 }
 
-void ObjectTracks::DropLost(double time_s, double bridge_s) {
-  std::erase_if(tracks_, [&](const ObjectTrack& track) { return time_s - track.confirmed_s > bridge_s; });
+double ObjectTracks::BridgeOf(const ObjectTrack& track) const {
+  constexpr int kOften = 10;
+  constexpr float kSameDepth_m = 0.25f;
+  const bool same_area =
+      2 * track.mask.area > track.detected_area && track.mask.area < 2 * track.detected_area;
+  const bool same_depth = std::abs(track.mask.depth_m - track.detected_depth_m) < kSameDepth_m;
+  const bool still_there =
+      track.kind == ObjectKind::kKnown && track.confirmations >= kOften && same_area && same_depth;
+  return still_there ? options_.bridge_still_s : options_.bridge_s;
+}
+
+void ObjectTracks::DropLost(double time_s, bool bridging) {
+  for (ObjectTrack& track : tracks_) {
+    if (track.confirmed_s < time_s) continue;
+    track.detected_area = track.mask.area;
+    track.detected_depth_m = track.mask.depth_m;
+  }
+  constexpr int kSmallestMover = 12;  // cells
+  std::erase_if(tracks_, [&](const ObjectTrack& track) {
+    const bool vanished = track.kind == ObjectKind::kUnknown && track.mask.area < kSmallestMover;
+    return vanished || time_s - track.confirmed_s > (bridging ? BridgeOf(track) : 0);
+  });
 }
 
 void ObjectTracks::RememberBoxes(FrameId frame, size_t max_history) {

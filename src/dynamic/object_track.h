@@ -19,7 +19,12 @@ const char* ToString(MotionState state);
 struct MotionEvidence {
   int tested = 0;
   int moving = 0;
+  int blocks = 0;      // of its mask
+  int new_blocks = 0;  // of them, those through which the camera has seen before
   double MovingShare() const { return tested > 0 ? static_cast<double>(moving) / tested : 0; }
+  // Whether this image by itself shows that it moves.
+  bool SpeaksForMotion() const { return MovingShare() >= 0.35 || NewShare() >= 0.2; }
+  double NewShare() const { return blocks > 0 ? static_cast<double>(new_blocks) / blocks : 0; }
 };
 
 struct ObjectTrack {
@@ -30,14 +35,17 @@ struct ObjectTrack {
   ImageBox box;     // in the present image, px
   ObjectMask mask;
   MotionState state = MotionState::kMoving;
-  Eigen::Vector2f own_velocity_px_s = Eigen::Vector2f::Zero();  // beyond what the camera's motion does to it
-  double confirmed_s = 0;      // last detection, or last time its motion was seen
+  Eigen::Vector2f own_velocity_px_s =
+      Eigen::Vector2f::Zero();  // beyond what the camera's motion does to it
+  double confirmed_s = 0;       // last detection, or last time its motion was seen
   double resting_since_s = 0;
   int confirmations = 0;
   MotionEvidence evidence;
+  int detected_area = 0;       // of the mask when it was detected last, cells
+  float detected_depth_m = 0;  // and its depth
   std::deque<std::pair<FrameId, ImageBox>> past_boxes;  // newest last
 
-  // Whether its points are to be removed; a mover of unknown class must have been seen twice.
+  // Whether its points are to be removed; a mover of unknown class must have been seen three times.
   bool Removes() const;
   std::optional<ImageBox> BoxAt(FrameId frame) const;
 };
@@ -45,25 +53,30 @@ struct ObjectTrack {
 // Associates detections with tracks and keeps each track's state of motion.
 class ObjectTracks {
  public:
-  ObjectTracks(const ObjectTrackOptions& options, ClassRoles roles) : options_(options), roles_(std::move(roles)) {}
+  ObjectTracks(const ObjectTrackOptions& options, ClassRoles roles)
+      : options_(options), roles_(std::move(roles)) {}
 
   const std::vector<ObjectTrack>& tracks() const { return tracks_; }
   std::vector<ObjectTrack>& tracks() { return tracks_; }
   const ClassRoles& roles() const { return roles_; }
 
-  // Boxes in pixels of the present image; best first. A box continues the track of its kind that it overlaps most; what is left starts
-  // new tracks where the score allows it.
+  // Boxes in pixels of the present image; best first. A box continues the track of its kind that it
+  // overlaps most; what is left starts new tracks where the score allows it.
   void TakeDetections(const std::vector<Detection>& detections, double time_s);
   // A cluster of moving points outside all masks: confirms the mover there or starts one.
   void TakeMover(const ImageBox& box, ObjectMask mask, double time_s);
   // The state of motion after `track.evidence` was filled.
   void UpdateStates(double time_s);
-  // Forgets tracks that nothing has confirmed for `bridge_s`.
-  void DropLost(double time_s, double bridge_s);
+  // Forgets tracks that nothing has confirmed for a while; without bridging at once.
+  void DropLost(double time_s, bool bridging);
   void RememberBoxes(FrameId frame, size_t max_history);
 
  private:
-  ObjectTrack* FindMatch(const Detection& detection, ObjectKind kind, const std::vector<uint8_t>& taken);
+  double StartScore(ObjectKind kind) const;
+  ObjectTrack* FindMatch(const Detection& detection, ObjectKind kind,
+                         const std::vector<uint8_t>& taken);
+  double BridgeOf(const ObjectTrack& track) const;
+  bool IsEcho(const Detection& detection, const std::vector<uint8_t>& taken) const;
   void UpdateState(ObjectTrack& track, double time_s) const;
 
   ObjectTrackOptions options_;

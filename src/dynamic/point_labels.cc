@@ -4,13 +4,20 @@ namespace msf {
 
 const char* ToString(PointReason reason) {
   switch (reason) {
-    case PointReason::kStatic: return "static";
-    case PointReason::kBox: return "box";
-    case PointReason::kObject: return "object";
-    case PointReason::kFlow: return "flow";
-    case PointReason::kDepth: return "depth";
-    case PointReason::kSettled: return "settled";
-    case PointReason::kReadmitted: return "readmitted";
+    case PointReason::kStatic:
+      return "static";
+    case PointReason::kBox:
+      return "box";
+    case PointReason::kObject:
+      return "object";
+    case PointReason::kFlow:
+      return "flow";
+    case PointReason::kDepth:
+      return "depth";
+    case PointReason::kSettled:
+      return "settled";
+    case PointReason::kReadmitted:
+      return "readmitted";
   }
   return "unknown";
 }

@@ -1,4 +1,5 @@
-// Does a point move by itself? Its flow and depth against what the camera's motion alone would do to it.
+// Does a point move by itself? Its flow and depth against what the camera's motion alone would do
+// to it.
 #pragma once
 
 #include <span>
@@ -20,23 +21,29 @@ struct PastView {
   FlowImage image;
   CoarseDepth depth;
   Rigid3d T_past_now;  // takes coordinates of the camera now to those of then
+  Vector6d unsteadiness =
+      Vector6d::Zero();  // change of the camera's motion (twist per frame) up to now
 };
 
 enum class PointMotion : uint8_t {
-  kUntested,       // not found in the other image, or no verdict possible
+  kUntested,  // not found in the other image, or no verdict possible
   kStatic,
   kMovesSideways,  // its flow disagrees
   kMovesInDepth,   // its depth does
 };
-inline bool Moves(PointMotion motion) { return motion == PointMotion::kMovesSideways || motion == PointMotion::kMovesInDepth; }
+inline bool Moves(PointMotion motion) {
+  return motion == PointMotion::kMovesSideways || motion == PointMotion::kMovesInDepth;
+}
 
-// Where features of this frame would be in the past image if they stood still; for those without depth: at infinity.
-std::vector<Eigen::Vector2f> PredictInPast(const Camera& camera, const FrameFeatures& features, std::span<const int> which,
-                                           const Rigid3d& T_past_now);
+// Where features of this frame would be in the past image if they stood still; for those without
+// depth: at infinity.
+std::vector<Eigen::Vector2f> PredictInPast(const Camera& camera, const FrameFeatures& features,
+                                           std::span<const int> which, const Rigid3d& T_past_now);
 
 // Verdicts on the features `which`, whose places in the past image are `flow` (same order).
-std::vector<PointMotion> TestMotion(const Camera& camera, const ScaleLevels& levels, const FrameFeatures& features,
-                                    std::span<const int> which, std::span<const FlowPoint> flow, const PastView& past,
+std::vector<PointMotion> TestMotion(const Camera& camera, const ScaleLevels& levels,
+                                    const FrameFeatures& features, std::span<const int> which,
+                                    std::span<const FlowPoint> flow, const PastView& past,
                                     const MotionTestOptions& options);
 
 }  // namespace msf

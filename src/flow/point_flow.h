@@ -1,4 +1,5 @@
-// Where points of one image are in another: pyramidal Lucas-Kanade (Lucas & Kanade, 1981; Bouguet, 2001).
+// Where points of one image are in another: pyramidal Lucas-Kanade (Lucas & Kanade, 1981; Bouguet,
+// 2001).
 #pragma once
 
 #include <Eigen/Core>
@@ -23,7 +24,8 @@ struct FlowOptions {
     visit("window_px", window_px, "side of the window that is compared, px of the smaller image");
     visit("levels", levels, "pyramid levels above the smaller image");
     visit("iterations", iterations, "steps per level");
-    visit("max_error", max_error, "mean grey value difference of the window above which a point counts as not found");
+    visit("max_error", max_error,
+          "mean grey value difference of the window above which a point counts as not found");
   }
   Status Check() const;
 };
@@ -46,12 +48,14 @@ class FlowImage {
 
 struct FlowPoint {
   Eigen::Vector2f image_px = Eigen::Vector2f::Zero();  // in the other image
-  bool found = false;  // inside the image and similar enough
+  bool found = false;                                  // inside the image and similar enough
 };
 
-// Follows points of `from` (px of the full image) into `to`, starting the search at `guesses_px` (as many, or none: where they were).
-// Both images were made with these options.
-std::vector<FlowPoint> FollowPoints(const FlowImage& from, const FlowImage& to, std::span<const Eigen::Vector2f> points_px,
-                                    std::span<const Eigen::Vector2f> guesses_px, const FlowOptions& options);
+// Follows points of `from` (px of the full image) into `to`, starting the search at `guesses_px`
+// (as many, or none: where they were). Both images were made with these options.
+std::vector<FlowPoint> FollowPoints(const FlowImage& from, const FlowImage& to,
+                                    std::span<const Eigen::Vector2f> points_px,
+                                    std::span<const Eigen::Vector2f> guesses_px,
+                                    const FlowOptions& options);
 
 }  // namespace msf

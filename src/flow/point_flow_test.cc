@@ -23,12 +23,14 @@ cv::Mat Texture(float dx, float dy) {
 std::vector<Eigen::Vector2f> Grid() {
   std::vector<Eigen::Vector2f> points;
   for (int y = 80; y < 400; y += 40) {
-    for (int x = 80; x < 560; x += 40) points.emplace_back(static_cast<float>(x), static_cast<float>(y));
+    for (int x = 80; x < 560; x += 40)
+      points.emplace_back(static_cast<float>(x), static_cast<float>(y));
   }
   return points;
 }
 
-void ExpectFollows(const FlowOptions& options, float dx, float dy, const std::vector<Eigen::Vector2f>& guesses) {
+void ExpectFollows(const FlowOptions& options, float dx, float dy,
+                   const std::vector<Eigen::Vector2f>& guesses) {
   const FlowImage from(Texture(0, 0), options), to(Texture(dx, dy), options);
   const std::vector<Eigen::Vector2f> points = Grid();
   const std::vector<FlowPoint> flow = FollowPoints(from, to, points, guesses, options);

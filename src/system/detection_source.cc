@@ -6,11 +6,13 @@
 namespace msf {
 
 Status DetectionScheduleOptions::Check() const {
-  if (every < 1 || delay_frames < 0) return Status::Error("detection: every must be at least 1, delay_frames not negative");
+  if (every < 1 || delay_frames < 0)
+    return Status::Error("detection: every must be at least 1, delay_frames not negative");
   return Status::Ok();
 }
 
-DetectionSource::DetectionSource(std::unique_ptr<Detector> detector, const DetectionScheduleOptions& options, bool threaded)
+DetectionSource::DetectionSource(std::unique_ptr<Detector> detector,
+                                 const DetectionScheduleOptions& options, bool threaded)
     : detector_(std::move(detector)), options_(options) {
   if (threaded) thread_ = std::thread([this] { Run(); });
 }
@@ -70,16 +72,19 @@ void DetectionSource::Detect(const RgbdFrame& frame) {
   StatusOr<Detections> found = Status::Error("");
   try {
     found = detector_->Detect(frame);
-  } catch (const std::exception& failure) {  // a user's detector may throw anything; tracking goes on without it
+  } catch (const std::exception&
+               failure) {  // a user's detector may throw anything; tracking goes on without it
     found = Status::Error(failure.what());
   }
-  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+  const std::chrono::duration<double, std::milli> elapsed =
+      std::chrono::steady_clock::now() - start;
   const std::lock_guard lock(mutex_);
   DetectionStatistics& s = statistics_;
   ++s.num_detected;
   s.mean_ms += (elapsed.count() - s.mean_ms) / static_cast<double>(s.num_detected);
   if (!found.ok()) {
-    if (s.num_failed++ == 0) s.first_failure = "frame " + std::to_string(frame.id.value()) + ": " + found.message();
+    if (s.num_failed++ == 0)
+      s.first_failure = "frame " + std::to_string(frame.id.value()) + ": " + found.message();
     return;
   }
   results_.push_back(std::make_shared<const Detections>(*std::move(found)));

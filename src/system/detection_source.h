@@ -14,7 +14,8 @@
 
 namespace msf {
 
-// Which frames are detected and when results are handed out; other values than the defaults serve experiments.
+// Which frames are detected and when results are handed out; other values than the defaults serve
+// experiments.
 struct DetectionScheduleOptions {
   int every = 1;
   int delay_frames = 0;
@@ -31,14 +32,17 @@ struct DetectionStatistics {
   int64_t num_detected = 0;  // frames that went through the detector
   int64_t num_failed = 0;    // of them, those on which it failed
   std::string first_failure;
-  double mean_ms = 0;        // per frame, wall time
+  double mean_ms = 0;  // per frame, wall time
 };
 
-// A failing detector (an error or an exception) gives no detections for that frame; it is counted, and the next frame is tried again.
+// A failing detector (an error or an exception) gives no detections for that frame; it is counted,
+// and the next frame is tried again.
 class DetectionSource {
  public:
-  // `threaded`: detection in a thread of its own behind a mailbox that holds the newest frame only; else within Offer().
-  DetectionSource(std::unique_ptr<Detector> detector, const DetectionScheduleOptions& options, bool threaded);
+  // `threaded`: detection in a thread of its own behind a mailbox that holds the newest frame only;
+  // else within Offer().
+  DetectionSource(std::unique_ptr<Detector> detector, const DetectionScheduleOptions& options,
+                  bool threaded);
   ~DetectionSource();
   DetectionSource(const DetectionSource&) = delete;
   DetectionSource& operator=(const DetectionSource&) = delete;

@@ -1,4 +1,5 @@
-// Reads frames ahead of their use on a thread of its own, so that decoding images runs beside tracking.
+// Reads frames ahead of their use on a thread of its own, so that decoding images runs beside
+// tracking.
 #pragma once
 
 #include <functional>
@@ -14,7 +15,8 @@ namespace msf {
 
 class FramePrefetcher {
  public:
-  // `load(i)` reads frame i in [0, count); it is called from one thread, in order. At most `ahead` frames wait.
+  // `load(i)` reads frame i in [0, count); it is called from one thread, in order. At most `ahead`
+  // frames wait.
   FramePrefetcher(size_t count, size_t ahead, std::function<StatusOr<RgbdFramePtr>(size_t)> load)
       : queue_(ahead), thread_([this, count, load = std::move(load)] { Run(count, load); }) {}
   // Stops reading and joins.

@@ -1,4 +1,5 @@
-// Those who want to know what happens: viewers, loggers, recorders. The system never asks whether they exist.
+// Those who want to know what happens: viewers, loggers, recorders. The system never asks whether
+// they exist.
 #pragma once
 
 #include "dynamic/dynamic_filter.h"
@@ -8,12 +9,15 @@
 
 namespace msf {
 
-// The calls come from the thread on which the thing happened; they should return quickly and must not call the system.
+// The calls come from the thread on which the thing happened; they should return quickly and must
+// not call the system.
 class Observer {
  public:
   virtual ~Observer() = default;
-  // What was found to move, before the frame is tracked on the rest. `features`: all, also those that are not used. Not called in mode off.
-  virtual void OnDynamics(const RgbdFrame& /*frame*/, const FrameFeatures& /*features*/, const DynamicResult& /*result*/) {}
+  // What was found to move, before the frame is tracked on the rest. `features`: all, also those
+  // that are not used. Not called in mode off.
+  virtual void OnDynamics(const RgbdFrame& /*frame*/, const FrameFeatures& /*features*/,
+                          const DynamicResult& /*result*/) {}
   virtual void OnFrame(const TrackingResult& /*result*/) {}
   virtual void OnKeyFrameMapped(KeyFrameId /*id*/, const MappingSummary& /*summary*/) {}
   // A loop was closed or two maps became one.

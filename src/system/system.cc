@@ -31,8 +31,8 @@ StatusOr<std::shared_ptr<const Vocabulary>> LoadVocabulary(const std::string& fi
 }  // namespace
 
 Status SystemOptions::Check() const {
-  for (const Status& status :
-       {detection.Check(), dynamic.Check(), feature.Check(), noise.Check(), tracking.Check(), mapping.Check(), loop_closing.Check()}) {
+  for (const Status& status : {detection.Check(), dynamic.Check(), feature.Check(), noise.Check(),
+                               tracking.Check(), mapping.Check(), loop_closing.Check()}) {
     if (!status.ok()) return status;
   }
   if (WantsDetector()) return detector.Check();
@@ -42,20 +42,24 @@ Status SystemOptions::Check() const {
 // The stages and, in threaded mode, the workers that carry keyframes from one to the next.
 class System::Impl {
  public:
-  Impl(const SystemOptions& options, const Camera& camera, std::shared_ptr<const Vocabulary> vocabulary,
-       std::unique_ptr<Detector> detector);
+  Impl(const SystemOptions& options, const Camera& camera,
+       std::shared_ptr<const Vocabulary> vocabulary, std::unique_ptr<Detector> detector);
 
   // The filter of dynamic points; none in mode off.
   Status MakeFilter(const std::vector<std::string>& class_names);
 
   StatusOr<TrackingResult> Track(const RgbdFramePtr& frame);
   Reconstruction Finish();
-  void AddObserver(std::shared_ptr<Observer> observer) { observers_.push_back(std::move(observer)); }
+  void AddObserver(std::shared_ptr<Observer> observer) {
+    observers_.push_back(std::move(observer));
+  }
 
  private:
   void OfferToDetector(const RgbdFramePtr& frame, StageTimings& timings_ms);
   FrameFeatures Extract(const RgbdFrame& frame, StageTimings& timings_ms);
-  FrameFeatures DropDynamicPoints(const RgbdFramePtr& frame, FrameFeatures features, StageTimings& timings_ms);
+  FrameFeatures DropDynamicPoints(const RgbdFramePtr& frame, FrameFeatures features,
+                                  StageTimings& timings_ms);
+  void TellFilter(const TrackingResult& result);
   MappingLoad Load() const;
   void HandOn(KeyFrameId id);
   void MapKeyFrame(KeyFrameId id);
@@ -76,6 +80,7 @@ class System::Impl {
   FullBundle full_bundle_;
   TrajectoryRecorder recorder_;
   std::vector<std::shared_ptr<Observer>> observers_;
+  uint64_t filter_epoch_ = 0;        // of the map that the filter's poses belong to
   double last_time_s_ = -1e300;      // of the present frame
   double previous_time_s_ = -1e300;  // of the one before it
   std::atomic<int> num_loops_ = 0, num_merges_ = 0;
@@ -86,31 +91,37 @@ class System::Impl {
   std::unique_ptr<Worker<KeyFrameId>> mapping_worker_;
 };
 
-System::Impl::Impl(const SystemOptions& options, const Camera& camera, std::shared_ptr<const Vocabulary> vocabulary,
-                   std::unique_ptr<Detector> detector)
-    : options_(options), camera_(std::make_shared<const Camera>(camera)), extractor_(options.feature),
+System::Impl::Impl(const SystemOptions& options, const Camera& camera,
+                   std::shared_ptr<const Vocabulary> vocabulary, std::unique_ptr<Detector> detector)
+    : options_(options),
+      camera_(std::make_shared<const Camera>(camera)),
+      extractor_(options.feature),
       map_(Map(camera_, extractor_.levels())),
-      tracker_({options.tracking, options.relocalization, options.noise, options.seed}, camera_, extractor_.levels(),
-               map_, vocabulary, database_),
+      tracker_({options.tracking, options.relocalization, options.noise, options.seed}, camera_,
+               extractor_.levels(), map_, vocabulary, database_),
       mapper_(options.mapping, options.noise, map_, vocabulary),
       loop_closer_(options.loop_closing, options.noise, map_, database_, options.seed),
       full_bundle_(options.loop_closing, options.noise, map_) {
   if (detector) {
-    detection_source_ = std::make_unique<DetectionSource>(std::move(detector), options.detection, !options.deterministic);
+    detection_source_ = std::make_unique<DetectionSource>(std::move(detector), options.detection,
+                                                          !options.deterministic);
   }
   if (options.deterministic) return;
   full_bundle_worker_ = std::make_unique<Worker<MapId>>(kFullBundleQueue, [this](MapId id) {
     cancel_full_bundle_ = false;
     full_bundle_.Run(id, cancel_full_bundle_);
   });
-  loop_worker_ = std::make_unique<Worker<KeyFrameId>>(kLoopClosingQueue, [this](KeyFrameId id) { CloseLoops(id); });
-  mapping_worker_ = std::make_unique<Worker<KeyFrameId>>(kMappingQueue, [this](KeyFrameId id) { MapKeyFrame(id); });
+  loop_worker_ = std::make_unique<Worker<KeyFrameId>>(kLoopClosingQueue,
+                                                      [this](KeyFrameId id) { CloseLoops(id); });
+  mapping_worker_ = std::make_unique<Worker<KeyFrameId>>(
+      kMappingQueue, [this](KeyFrameId id) { MapKeyFrame(id); });
 }
 
 StatusOr<TrackingResult> System::Impl::Track(const RgbdFramePtr& frame) {
   if (const Status status = CheckFrame(*frame); !status.ok()) return status;
   if (!(frame->time_s > last_time_s_)) {
-    return Status::Error("frame " + std::to_string(frame->id.value()) + " is not later than the one before it");
+    return Status::Error("frame " + std::to_string(frame->id.value()) +
+                         " is not later than the one before it");
   }
   previous_time_s_ = last_time_s_;
   last_time_s_ = frame->time_s;
@@ -133,6 +144,7 @@ StatusOr<TrackingResult> System::Impl::Track(const RgbdFramePtr& frame) {
     if (timings_ms.contains(stage)) timings_ms["total"] += timings_ms[stage];
   }
   result.timings_ms = std::move(timings_ms);
+  if (filter_) TellFilter(result);
   recorder_.Record(result);
   if (result.new_keyframe) HandOn(*result.new_keyframe);
   for (const auto& observer : observers_) observer->OnFrame(result);
@@ -149,18 +161,27 @@ FrameFeatures System::Impl::Extract(const RgbdFrame& frame, StageTimings& timing
   const StageTimer timer(timings_ms, "feature");
   const Rigid3d T_depth_color = tracker_.PredictMotion(frame.depth_delay_s);
   if (!filter_) return extractor_.Extract(frame, T_depth_color);
-  const int num_features = static_cast<int>(options_.feature.num_features * filter_->FeatureFactor());
+  const int num_features =
+      static_cast<int>(options_.feature.num_features * filter_->FeatureFactor());
   return extractor_.Extract(frame, num_features, T_depth_color);
 }
 
-FrameFeatures System::Impl::DropDynamicPoints(const RgbdFramePtr& frame, FrameFeatures features, StageTimings& timings_ms) {
+FrameFeatures System::Impl::DropDynamicPoints(const RgbdFramePtr& frame, FrameFeatures features,
+                                              StageTimings& timings_ms) {
   const StageTimer timer(timings_ms, "dynamic");
-  const std::shared_ptr<const Detections> detections = detection_source_ ? detection_source_->Newest(frame->id) : nullptr;
+  const std::shared_ptr<const Detections> detections =
+      detection_source_ ? detection_source_->Newest(frame->id) : nullptr;
   const double since_last_s = frame->time_s - previous_time_s_;
   const Rigid3d T_last_now = tracker_.PredictMotion(since_last_s).Inverse();
   const DynamicResult result = filter_->Classify(*frame, features, T_last_now, detections.get());
   for (const auto& observer : observers_) observer->OnDynamics(*frame, features, result);
   return KeepStatic(features, result.labels, options_.dynamic.min_static_probability, *camera_);
+}
+
+void System::Impl::TellFilter(const TrackingResult& result) {
+  const uint64_t epoch = map_.Read()->epoch();
+  filter_->TakePose(result.T_cw, !result.started_map && epoch == filter_epoch_);
+  filter_epoch_ = epoch;
 }
 
 MappingLoad System::Impl::Load() const {
@@ -196,7 +217,8 @@ void System::Impl::CloseLoops(KeyFrameId id) {
 }
 
 void System::Impl::RequestFullBundle(MapId id) {
-  cancel_full_bundle_ = full_bundle_worker_ != nullptr;  // a newer correction makes the one under way useless
+  cancel_full_bundle_ =
+      full_bundle_worker_ != nullptr;  // a newer correction makes the one under way useless
   if (full_bundle_worker_) {
     full_bundle_worker_->Push(id);
   } else {
@@ -245,25 +267,28 @@ Reconstruction System::Impl::Resolve(const Map& map) const {
 
 Status System::Impl::MakeFilter(const std::vector<std::string>& class_names) {
   if (options_.dynamic.mode == "off") return Status::Ok();
-  StatusOr<std::unique_ptr<DynamicFilter>> filter =
-      DynamicFilter::Create(options_.dynamic, *camera_, extractor_.levels(), class_names, options_.seed);
+  StatusOr<std::unique_ptr<DynamicFilter>> filter = DynamicFilter::Create(
+      options_.dynamic, *camera_, extractor_.levels(), class_names, options_.seed);
   if (!filter.ok()) return filter.status();
   filter_ = *std::move(filter);
   return Status::Ok();
 }
 
-StatusOr<std::unique_ptr<System>> System::Create(const SystemOptions& options, const Camera& camera) {
+StatusOr<std::unique_ptr<System>> System::Create(const SystemOptions& options,
+                                                 const Camera& camera) {
   if (const Status status = options.Check(); !status.ok()) return status;
   if (!options.WantsDetector()) return Create(options, camera, nullptr);
   DetectorOptions detector_options = options.detector;
   // Weak detections may continue an object that is known already.
-  detector_options.confidence = std::min(detector_options.confidence, options.dynamic.tracks.continue_score);
+  detector_options.confidence =
+      std::min(detector_options.confidence, options.dynamic.tracks.continue_score);
   StatusOr<std::unique_ptr<Detector>> detector = MakeDetector(detector_options);
   if (!detector.ok()) return detector.status();
   return Create(options, camera, *std::move(detector));
 }
 
-StatusOr<std::unique_ptr<System>> System::Create(const SystemOptions& options, const Camera& camera, std::unique_ptr<Detector> detector) {
+StatusOr<std::unique_ptr<System>> System::Create(const SystemOptions& options, const Camera& camera,
+                                                 std::unique_ptr<Detector> detector) {
   for (const Status& status : {options.Check(), camera.Check()}) {
     if (!status.ok()) return status;
   }
@@ -272,7 +297,8 @@ StatusOr<std::unique_ptr<System>> System::Create(const SystemOptions& options, c
     return Status::Error("dynamic.mode " + mode + " needs a detector, but detector.model is none");
   StatusOr<std::shared_ptr<const Vocabulary>> vocabulary = LoadVocabulary(options.vocabulary);
   if (!vocabulary.ok()) return vocabulary.status();
-  const std::vector<std::string> class_names = detector ? detector->class_names() : std::vector<std::string>();
+  const std::vector<std::string> class_names =
+      detector ? detector->class_names() : std::vector<std::string>();
   auto impl = std::make_unique<Impl>(options, camera, *vocabulary, std::move(detector));
   if (const Status status = impl->MakeFilter(class_names); !status.ok()) return status;
   return std::unique_ptr<System>(new System(std::move(impl)));
@@ -281,7 +307,9 @@ StatusOr<std::unique_ptr<System>> System::Create(const SystemOptions& options, c
 System::System(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 System::~System() = default;
 
-void System::AddObserver(std::shared_ptr<Observer> observer) { impl_->AddObserver(std::move(observer)); }
+void System::AddObserver(std::shared_ptr<Observer> observer) {
+  impl_->AddObserver(std::move(observer));
+}
 
 StatusOr<TrackingResult> System::Track(const RgbdFramePtr& frame) { return impl_->Track(frame); }
 

@@ -39,9 +39,12 @@ struct Reconstruction {
 class System {
  public:
   // An error (unreadable vocabulary, options or camera that make no sense) is a sentence.
-  static StatusOr<std::unique_ptr<System>> Create(const SystemOptions& options, const Camera& camera);
+  static StatusOr<std::unique_ptr<System>> Create(const SystemOptions& options,
+                                                  const Camera& camera);
   // With a detector of the caller's own in place of options.detector.
-  static StatusOr<std::unique_ptr<System>> Create(const SystemOptions& options, const Camera& camera, std::unique_ptr<Detector> detector);
+  static StatusOr<std::unique_ptr<System>> Create(const SystemOptions& options,
+                                                  const Camera& camera,
+                                                  std::unique_ptr<Detector> detector);
   ~System();
   System(const System&) = delete;
   System& operator=(const System&) = delete;
@@ -49,11 +52,13 @@ class System {
   // Observers live at least as long as the system. To be added before the first frame.
   void AddObserver(std::shared_ptr<Observer> observer);
 
-  // Locates the camera of one frame. Frames come in the order of time from one thread; a frame whose images do not fit the
-  // camera, or whose time is not later than the last one's, is an error and changes nothing.
+  // Locates the camera of one frame. Frames come in the order of time from one thread; a frame
+  // whose images do not fit the camera, or whose time is not later than the last one's, is an error
+  // and changes nothing.
   StatusOr<TrackingResult> Track(const RgbdFramePtr& frame);
 
-  // Ends all work in order (mapping, loop closing), and resolves the trajectory against the final map. Track() must not follow.
+  // Ends all work in order (mapping, loop closing), and resolves the trajectory against the final
+  // map. Track() must not follow.
   Reconstruction Finish();
 
  private:

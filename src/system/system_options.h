@@ -33,12 +33,15 @@ struct SystemOptions {
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
-    visit("deterministic", deterministic, "all stages inline on one thread: two runs give equal bytes");
+    visit("deterministic", deterministic,
+          "all stages inline on one thread: two runs give equal bytes");
     visit("seed", seed, "of everything random");
     visit("vocabulary", vocabulary, "file of visual words; empty: the one that ships");
     visit("wait_for_mapping", wait_for_mapping,
-          "tracking waits while keyframes queue up: for recordings, which can be read faster than they can be mapped");
-    visit("final_bundle", final_bundle, "adjust the whole map once more when the last frame has been seen");
+          "tracking waits while keyframes queue up: for recordings, which can be read faster than "
+          "they can be mapped");
+    visit("final_bundle", final_bundle,
+          "adjust the whole map once more when the last frame has been seen");
     visit("detector", detector, "");
     visit("detection", detection, "");
     visit("dynamic", dynamic, "");

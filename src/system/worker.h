@@ -1,4 +1,5 @@
-// Adds a thread to a single-threaded stage: items go into a bounded queue, one thread processes them in order.
+// Adds a thread to a single-threaded stage: items go into a bounded queue, one thread processes
+// them in order.
 #pragma once
 
 #include <atomic>
@@ -29,10 +30,12 @@ class Worker {
   int queued() const { return static_cast<int>(queue_.size()); }
   bool idle() const { return pending_ == 0; }
 
-  // Processes what is queued and joins. Throws what `process` threw, if it did: nothing was processed after that.
+  // Processes what is queued and joins. Throws what `process` threw, if it did: nothing was
+  // processed after that.
   void Finish() {
     Close();
-    if (const std::exception_ptr failure = std::exchange(failure_, nullptr)) std::rethrow_exception(failure);
+    if (const std::exception_ptr failure = std::exchange(failure_, nullptr))
+      std::rethrow_exception(failure);
   }
 
  private:

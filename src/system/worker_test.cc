@@ -1,9 +1,9 @@
 #include "system/worker.h"
 
+#include <gtest/gtest.h>
+
 #include <stdexcept>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "system/frame_prefetcher.h"
 
@@ -56,7 +56,9 @@ TEST(FramePrefetcher, HandsOutAllFramesAndThenNothing) {
 }
 
 TEST(FramePrefetcher, CanBeLeftBeforeTheEnd) {
-  const auto load = [](size_t) -> StatusOr<RgbdFramePtr> { return RgbdFramePtr(std::make_shared<RgbdFrame>()); };
+  const auto load = [](size_t) -> StatusOr<RgbdFramePtr> {
+    return RgbdFramePtr(std::make_shared<RgbdFrame>());
+  };
   FramePrefetcher prefetcher(1000, 2, load);
   EXPECT_TRUE(prefetcher.Next().has_value());
 }

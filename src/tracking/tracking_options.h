@@ -1,4 +1,5 @@
-// Options of tracking; the defaults are those of the published RGB-D configurations of ORB-SLAM-class systems.
+// Options of tracking; the defaults are those of the published RGB-D configurations of
+// ORB-SLAM-class systems.
 #pragma once
 
 #include "optimization/feature_observation.h"
@@ -19,17 +20,19 @@ struct KeyFramePolicyOptions {
   template <typename Visitor>
   void Visit(Visitor& visit) {
     visit("max_interval_s", max_interval_s, "a keyframe is due this long after the last, s");
-    visit("reference_ratio", reference_ratio, "wanted when fewer than this share of the reference's points is tracked");
+    visit("reference_ratio", reference_ratio,
+          "wanted when fewer than this share of the reference's points is tracked");
     visit("urgent_ratio", urgent_ratio, "wanted even from a busy mapper below this share");
     visit("min_inliers", min_inliers, "never with fewer tracked points");
     visit("min_tracked_close", min_tracked_close, "with fewer tracked close points ...");
-    visit("max_untracked_close", max_untracked_close, "... and more close points that are not in the map, wanted");
+    visit("max_untracked_close", max_untracked_close,
+          "... and more close points that are not in the map, wanted");
     visit("max_queued", max_queued, "declined while the mapper has this many waiting");
   }
 };
 
 struct TrackingOptions {
-  int min_initial_points = 500;
+  int min_initial_points = 200;
   int min_initial_depths = 100;
   double close_depth_baselines = 40;
   double motion_radius_px = 15;
@@ -56,24 +59,39 @@ struct TrackingOptions {
   void Visit(Visitor& visit) {
     visit("min_initial_points", min_initial_points, "features that the first frame of a map needs");
     visit("min_initial_depths", min_initial_depths, "of these, features with depth");
-    visit("close_depth_baselines", close_depth_baselines, "depths below this many virtual baselines are close (reliable)");
-    visit("motion_radius_px", motion_radius_px, "search radius around the predicted place at level 0, px");
-    visit("min_motion_matches", min_motion_matches, "with fewer matches the radius is doubled, then given up");
-    visit("reference_match_ratio", reference_match_ratio, "best to second best, matching to the reference keyframe");
-    visit("min_reference_matches", min_reference_matches, "matches that the reference keyframe must give");
+    visit("close_depth_baselines", close_depth_baselines,
+          "depths below this many virtual baselines are close (reliable)");
+    visit("motion_radius_px", motion_radius_px,
+          "search radius around the predicted place at level 0, px");
+    visit("min_motion_matches", min_motion_matches,
+          "with fewer matches the radius is doubled, then given up");
+    visit("reference_match_ratio", reference_match_ratio,
+          "best to second best, matching to the reference keyframe");
+    visit("min_reference_matches", min_reference_matches,
+          "matches that the reference keyframe must give");
     visit("min_pose_inliers", min_pose_inliers, "inliers of a first pose estimate");
     visit("max_local_keyframes", max_local_keyframes, "keyframes in the local map");
-    visit("max_neighbours", max_neighbours, "covisible keyframes that each keyframe adds to the local map");
-    visit("local_radius_factor", local_radius_factor, "factor on the search radius in the local map");
-    visit("local_radius_factor_relocalized", local_radius_factor_relocalized, "the same just after relocalisation");
-    visit("local_radius_factor_refined", local_radius_factor_refined, "the same in the rounds after the first");
-    visit("local_search_rounds", local_search_rounds, "searches of the local map, each followed by an optimisation");
-    visit("local_match_ratio", local_match_ratio, "best to second best at the same level, matching the local map");
+    visit("max_neighbours", max_neighbours,
+          "covisible keyframes that each keyframe adds to the local map");
+    visit("local_radius_factor", local_radius_factor,
+          "factor on the search radius in the local map");
+    visit("local_radius_factor_relocalized", local_radius_factor_relocalized,
+          "the same just after relocalisation");
+    visit("local_radius_factor_refined", local_radius_factor_refined,
+          "the same in the rounds after the first");
+    visit("local_search_rounds", local_search_rounds,
+          "searches of the local map, each followed by an optimisation");
+    visit("local_match_ratio", local_match_ratio,
+          "best to second best at the same level, matching the local map");
     visit("min_local_inliers", min_local_inliers, "inliers with which a frame counts as tracked");
-    visit("min_local_inliers_relocalized", min_local_inliers_relocalized, "the same within a second of relocalisation");
-    visit("recently_lost_s", recently_lost_s, "relocalisation is tried this long before a new map starts, s");
-    visit("min_keyframes_to_keep_map", min_keyframes_to_keep_map, "a smaller map is forgotten when lost");
-    visit("min_static_weight", min_static_weight, "features less likely static never become map points");
+    visit("min_local_inliers_relocalized", min_local_inliers_relocalized,
+          "the same within a second of relocalisation");
+    visit("recently_lost_s", recently_lost_s,
+          "relocalisation is tried this long before a new map starts, s");
+    visit("min_keyframes_to_keep_map", min_keyframes_to_keep_map,
+          "a smaller map is forgotten when lost");
+    visit("min_static_weight", min_static_weight,
+          "features less likely static never become map points");
     visit("keyframe", keyframe, "");
     visit("pose", pose, "");
   }

@@ -60,9 +60,10 @@ struct TrainOptions {
     visit("distill_rate", distill_rate, "largest learning rate (AdamW) of those passes");
     visit("new_rate", new_rate,
           "new layers learn this many times as fast as those with starting weights");
-    visit("imitation", imitation,
-          "weight of the distance to the class logits of the network that gave the starting weights, "
-          "on pictures that are not rotated");
+    visit(
+        "imitation", imitation,
+        "weight of the distance to the class logits of the network that gave the starting weights, "
+        "on pictures that are not rotated");
     visit("average_decay", average_decay,
           "decay of the moving average of weights that is kept in the end");
     visit("average_ramp", average_ramp, "updates over which that decay rises");

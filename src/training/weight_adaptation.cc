@@ -70,4 +70,16 @@ StatusOr<NamedTensors> AdaptWeights(const NamedTensors& source, const ModelGraph
   return state;
 }
 
+StatusOr<NamedTensors> BlendWeights(const NamedTensors& a, const NamedTensors& b, double share) {
+  NamedTensors blended;
+  for (const auto& [name, tensor] : a) {
+    const auto other = b.find(name);
+    if (other == b.end() || other->second.sizes() != tensor.sizes())
+      return Status::Error("the weights to be blended are of different models: tensor " + name +
+                           " differs");
+    blended[name] = at::lerp(tensor.to(torch::kFloat), other->second.to(torch::kFloat), share);
+  }
+  return blended;
+}
+
 }  // namespace msf

@@ -11,4 +11,9 @@ namespace msf {
 // COCO classes or as many as `target`; another count is an error.
 StatusOr<NamedTensors> AdaptWeights(const NamedTensors& source, const ModelGraph& target);
 
+// The mean of two sets of weights of one model, `share` of it `b`: between the weights before and
+// after a fine-tuning lie ones that do better than either on what both can do (Wortsman et al.,
+// Robust fine-tuning of zero-shot models, CVPR 2022).
+StatusOr<NamedTensors> BlendWeights(const NamedTensors& a, const NamedTensors& b, double share);
+
 }  // namespace msf

@@ -1,0 +1,100 @@
+#include "dynamic/background.h"
+
+#include <array>
+#include <cmath>
+
+namespace msf {
+
+void Background::Remember(double time_s, const CoarseDepth& depth, const cv::Mat1b& removed,
+                          const Rigid3d& T_cw, bool steady) {
+  if (!views_.empty() && time_s - views_.back().time_s < options_.keep_every_s) return;
+  views_.push_back({time_s, depth, removed, T_cw, steady});
+  while (time_s - views_.front().time_s > options_.oldest_s) views_.pop_front();
+}
+
+void Background::ChangeWorld(const Rigid3d& T_old_new) {
+  for (View& view : views_) view.T_cw = view.T_cw * T_old_new;
+}
+
+// A few views, evenly spread over the ages.
+std::vector<const Background::View*> Background::Choose(double time_s) const {
+  std::vector<const View*> chosen;
+  for (int k = 0; k < options_.num_views; ++k) {
+    const double step_s =
+        (options_.oldest_s - options_.youngest_s) / std::max(1, options_.num_views - 1);
+    const double least_age_s = options_.youngest_s + k * step_s;
+    const View* best = nullptr;
+    for (const View& view : views_) {
+      if (time_s - view.time_s >= least_age_s - 0.5 * options_.keep_every_s) best = &view;
+    }
+    if (best && (chosen.empty() || chosen.back() != best)) chosen.push_back(best);
+  }
+  return chosen;
+}
+
+BlockVerdict Background::CompareWith(const View& view, const Eigen::Vector3d& p_past) const {
+  constexpr double kNearest_m = 0.2;
+  if (p_past.z() < kNearest_m) return BlockVerdict::kUnknown;
+  const Eigen::Vector2d px = camera_.Distort(camera_.Project(p_past));
+  if (!(px.x() >= 0 && px.y() >= 0 && px.x() < camera_.width && px.y() < camera_.height))
+    return BlockVerdict::kUnknown;
+  const cv::Point cell = view.depth.CellOf(static_cast<float>(px.x()), static_cast<float>(px.y()));
+  const double tolerance_m =
+      options_.tolerance_m + options_.tolerance_per_m2 * p_past.z() * p_past.z();
+  // Two cells around for the poses' errors: agreement needs one of the nearer ones, seeing through
+  // needs all.
+  int beyond = 0, valid = 0;
+  bool agrees = false;
+  for (int dr = -2; dr <= 2; ++dr) {
+    for (int dc = -2; dc <= 2; ++dc) {
+      const int r = cell.y + dr, c = cell.x + dc;
+      if (r < 0 || c < 0 || r >= view.depth.rows() || c >= view.depth.cols()) continue;
+      const double d = view.depth.metres()(r, c);
+      if (d <= 0) continue;
+      ++valid;
+      beyond += d > p_past.z() + 2 * tolerance_m;
+      const bool near = std::abs(dr) <= 1 && std::abs(dc) <= 1;
+      const bool removed = !view.removed.empty() && view.removed(r, c) != 0;
+      agrees = agrees || (near && !removed && std::abs(d - p_past.z()) <= tolerance_m);
+    }
+  }
+  if (agrees) return BlockVerdict::kConfirmed;
+  constexpr int kEnough = 12;
+  return valid >= kEnough && beyond == valid ? BlockVerdict::kIntruder : BlockVerdict::kUnknown;
+}
+
+BlockVerdicts Background::Compare(double time_s, const CoarseDepth& depth, const Rigid3d& T_cw,
+                                  bool steady) const {
+  constexpr int kStep = BlockVerdicts::kBlockCells;
+  constexpr int kCell = CoarseDepth::kCellSize;
+  BlockVerdicts verdicts(depth.rows() / kStep, depth.cols() / kStep);
+  const std::vector<const View*> views = Choose(time_s);
+  if (views.empty()) return verdicts;
+  const Rigid3d T_wc = T_cw.Inverse();
+  std::vector<Rigid3d> T_past_now;
+  for (const View* view : views) T_past_now.push_back(view->T_cw * T_wc);
+  for (int r = 0; r < verdicts.rows(); ++r) {
+    for (int c = 0; c < verdicts.cols(); ++c) {
+      const double d = depth.metres()(r * kStep, c * kStep);
+      if (d <= 0) continue;
+      const Eigen::Vector2d px(c * kStep * kCell + kCell / 2.0, r * kStep * kCell + kCell / 2.0);
+      const Eigen::Vector3d p = camera_.Unproject(camera_.Undistort(px), d);
+      std::array<int, 3> votes{};
+      for (size_t k = 0; k < views.size(); ++k) {
+        const BlockVerdict verdict = CompareWith(*views[k], T_past_now[k] * p);
+        const bool counts = verdict != BlockVerdict::kIntruder || (steady && views[k]->steady);
+        if (counts) ++votes[static_cast<size_t>(verdict)];
+      }
+      const int confirmed = votes[static_cast<size_t>(BlockVerdict::kConfirmed)];
+      const int intruder = votes[static_cast<size_t>(BlockVerdict::kIntruder)];
+      if (intruder > confirmed) {
+        verdicts.Set(r, c, BlockVerdict::kIntruder);
+      } else if (confirmed > 0) {
+        verdicts.Set(r, c, BlockVerdict::kConfirmed);
+      }
+    }
+  }
+  return verdicts;
+}
+
+}  // namespace msf

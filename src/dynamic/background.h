@@ -1,0 +1,76 @@
+// What the static world looked like a moment ago, in depth: surfaces that are still there stand
+// still, and where the camera has seen through, something has come in since.
+#pragma once
+
+#include <deque>
+
+#include "dynamic/coarse_depth.h"
+#include "dynamic/dynamic_options.h"
+#include "geometry/rigid3d.h"
+
+namespace msf {
+
+enum class BlockVerdict : uint8_t {
+  kUnknown,    // no depth, not seen before, or hidden before
+  kConfirmed,  // a surface that was there before, outside all masks
+  kIntruder,   // the camera has seen through this place before
+};
+
+// Verdicts per block of 2 x 2 cells of CoarseDepth.
+class BlockVerdicts {
+ public:
+  static constexpr int kBlockCells = 2;
+
+  BlockVerdicts() = default;
+  BlockVerdicts(int rows, int cols)
+      : verdicts_(rows, cols, static_cast<uint8_t>(BlockVerdict::kUnknown)) {}
+  int rows() const { return verdicts_.rows; }
+  int cols() const { return verdicts_.cols; }
+  BlockVerdict At(int row, int col) const { return static_cast<BlockVerdict>(verdicts_(row, col)); }
+  void Set(int row, int col, BlockVerdict verdict) {
+    verdicts_(row, col) = static_cast<uint8_t>(verdict);
+  }
+  BlockVerdict OfCell(const cv::Point& cell) const {
+    if (verdicts_.empty()) return BlockVerdict::kUnknown;
+    return At(std::min(cell.y / kBlockCells, rows() - 1),
+              std::min(cell.x / kBlockCells, cols() - 1));
+  }
+
+ private:
+  cv::Mat1b verdicts_;
+};
+
+class Background {
+ public:
+  Background(const BackgroundOptions& options, const Camera& camera)
+      : options_(options), camera_(camera) {}
+
+  // Keeps a view for later comparison. `removed`: cells that belonged to objects (may be empty).
+  // `steady`: the camera turned slowly.
+  void Remember(double time_s, const CoarseDepth& depth, const cv::Mat1b& removed,
+                const Rigid3d& T_cw, bool steady);
+  // Compares depth seen from T_cw with views of some age. What differs is new only where the
+  // camera turned slowly (`steady`) both times: depth is not taken at the very time of the pose.
+  BlockVerdicts Compare(double time_s, const CoarseDepth& depth, const Rigid3d& T_cw,
+                        bool steady) const;
+  // The world's coordinates have changed: T_old_new takes new ones to old ones.
+  void ChangeWorld(const Rigid3d& T_old_new);
+  void Forget() { views_.clear(); }
+
+ private:
+  struct View {
+    double time_s = 0;
+    CoarseDepth depth;
+    cv::Mat1b removed;
+    Rigid3d T_cw;
+    bool steady = false;
+  };
+  std::vector<const View*> Choose(double time_s) const;
+  BlockVerdict CompareWith(const View& view, const Eigen::Vector3d& p_past) const;
+
+  BackgroundOptions options_;
+  Camera camera_;
+  std::deque<View> views_;  // oldest first
+};
+
+}  // namespace msf
