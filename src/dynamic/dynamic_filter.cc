@@ -180,6 +180,7 @@ void DynamicFilter::ClassifyByMotion(Work& work, const Rigid3d& T_last_now_predi
     FindMovers(work);
     FindIntruders(work);
   }
+  TestSlowMotions(work);
   GatherEvidence(work);
   tracks_.UpdateStates(work.frame.time_s);
   tracks_.DropLost(work.frame.time_s, options_.bridging);
@@ -217,7 +218,7 @@ ImageBox DynamicFilter::CarryBox(const ImageBox& box, const PastView& then,
                                  const Work& work) const {
   constexpr int kStep = 3;  // cells
   constexpr size_t kEnough = 6;
-  const ObjectMask mask = MaskInBox(then.depth, {}, box, std::nullopt, options_.mask);
+  const ObjectMask mask = MaskInBox(then.depth, {}, box, false, std::nullopt, options_.mask);
   std::vector<Eigen::Vector2f> points;
   for (int r = 0; r < mask.cells.rows; r += kStep) {
     for (int c = 0; c < mask.cells.cols; c += kStep) {
@@ -294,20 +295,35 @@ const PastView* DynamicFilter::ViewBefore(double time_s) const {
   return found;
 }
 
-void DynamicFilter::TestMotions(Work& work) {
+void DynamicFilter::TestMotions(Work& work) const {
   work.motion.assign(work.all.size(), PointMotion::kUntested);
   work.slow_motion = work.motion;
   if (past_.empty()) return;
   work.motion = TestMotion(camera_, levels_, work.features, work.all, work.flow, past_.back(),
                            options_.motion);
+}
+
+// Objects may move too slowly for two successive images: their points are compared with an older
+// one.
+void DynamicFilter::TestSlowMotions(Work& work) const {
   const PastView* before = ViewBefore(work.frame.time_s - options_.motion.look_back_s);
   if (!before || before == &past_.back()) return;
+  std::vector<int> on_objects;
+  std::vector<Eigen::Vector2f> points;
+  for (const int i : work.all) {
+    const Eigen::Vector2f& px = work.features.image_px[i];
+    const auto covers = [&](const ObjectTrack& track) { return track.mask.Covers(px); };
+    if (std::none_of(tracks_.tracks().begin(), tracks_.tracks().end(), covers)) continue;
+    on_objects.push_back(i);
+    points.push_back(px);
+  }
   const std::vector<Eigen::Vector2f> guesses =
-      PredictInPast(camera_, work.features, work.all, before->T_past_now);
+      PredictInPast(camera_, work.features, on_objects, before->T_past_now);
   const std::vector<FlowPoint> flow =
-      FollowPoints(work.view.image, before->image, work.features.image_px, guesses, flow_options_);
-  work.slow_motion =
-      TestMotion(camera_, levels_, work.features, work.all, flow, *before, options_.motion);
+      FollowPoints(work.view.image, before->image, points, guesses, flow_options_);
+  const std::vector<PointMotion> verdicts =
+      TestMotion(camera_, levels_, work.features, on_objects, flow, *before, options_.motion);
+  for (size_t k = 0; k < on_objects.size(); ++k) work.slow_motion[on_objects[k]] = verdicts[k];
 }
 
 // --- Objects
@@ -343,6 +359,7 @@ void DynamicFilter::MoveTracks(const Work& work) {
 }
 
 void DynamicFilter::GrowMasks(const Work& work) {
+  constexpr float kTrustedScore = 0.5f;
   for (ObjectTrack& track : tracks_.tracks()) {
     if (!options_.depth_split) {
       track.mask = WholeBox(work.view.depth, track.box);
@@ -350,7 +367,9 @@ void DynamicFilter::GrowMasks(const Work& work) {
     }
     std::optional<float> expected_m;
     if (track.mask.depth_m > 0) expected_m = track.mask.depth_m;
-    track.mask = MaskInBox(work.view.depth, work.background, track.box, expected_m, options_.mask);
+    const bool trusted = track.confirmed_s == work.frame.time_s && track.score >= kTrustedScore;
+    track.mask =
+        MaskInBox(work.view.depth, work.background, track.box, trusted, expected_m, options_.mask);
   }
 }
 

@@ -86,7 +86,8 @@ class DynamicFilter {
   std::vector<Detection> CarryToNow(const Detections& detections, const Work& work) const;
   ImageBox CarryBox(const ImageBox& box, const PastView& then, const Work& work) const;
   void FollowCamera(const Rigid3d& T_last_now_predicted, Work& work, DynamicResult& result);
-  void TestMotions(Work& work);
+  void TestMotions(Work& work) const;
+  void TestSlowMotions(Work& work) const;
   void MoveTracks(const Work& work);
   void GrowMasks(const Work& work);
   void FindMovers(const Work& work);

@@ -152,7 +152,8 @@ ObjectMask WholeBox(const CoarseDepth& depth, const ImageBox& box) {
 }
 
 ObjectMask MaskInBox(const CoarseDepth& depth, const BlockVerdicts& background, const ImageBox& box,
-                     std::optional<float> expected_depth_m, const ObjectMaskOptions& options) {
+                     bool trusted, std::optional<float> expected_depth_m,
+                     const ObjectMaskOptions& options) {
   const cv::Rect core = CellsOf(depth, Scaled(box, 0.6f, 0.8f));
   const DepthHistogram histogram(depth, core);
   if (histogram.valid < options.min_depth_share * histogram.cells) return WholeBox(depth, box);
@@ -162,18 +163,19 @@ ObjectMask MaskInBox(const CoarseDepth& depth, const BlockVerdicts& background, 
     for (int c = core.x; c < core.br().x; ++c) {
       const float d = depth.metres()(r, c);
       if (d <= 0 || std::abs(d - depth_m) >= kSeedBand_m) continue;
-      (background.OfCell({c, r}) == BlockVerdict::kConfirmed ? confirmed : seeds)
-          .emplace_back(c, r);
+      const bool is_background = background.OfCell({c, r}) == BlockVerdict::kConfirmed;
+      (is_background ? confirmed : seeds).emplace_back(c, r);
     }
   }
-  // A person who has sat still and was not found for a while looks like background. The detector
-  // knows better.
-  static const BlockVerdicts kNothingKnown;
-  const bool has_sat_still = confirmed.size() > seeds.size();
-  if (has_sat_still) seeds.insert(seeds.end(), confirmed.begin(), confirmed.end());
+  constexpr size_t kAlmostAll = 5;  // to one
   const auto margin = static_cast<float>(1 + 2 * options.box_margin);
-  cv::Mat1b cells = Flood(depth, has_sat_still ? kNothingKnown : background, seeds,
-                          CellsOf(depth, Scaled(box, margin, margin)), depth_m, options);
+  cv::Mat1b cells;
+  if (trusted && confirmed.size() > kAlmostAll * seeds.size()) {
+    cells = Flood(depth, {}, confirmed, CellsOf(depth, box), depth_m, options);
+  } else {
+    cells = Flood(depth, background, seeds, CellsOf(depth, Scaled(box, margin, margin)), depth_m,
+                  options);
+  }
   KeepLargePieces(cells);
   Grow(cells, depth, options);
   return Finished(std::move(cells), depth_m);

@@ -13,9 +13,9 @@ namespace msf {
 
 struct FlowOptions {
   int shrink = 2;
-  int window_px = 11;
+  int window_px = 9;
   int levels = 3;
-  int iterations = 10;
+  int iterations = 6;
   double max_error = 20;
 
   template <typename Visitor>
