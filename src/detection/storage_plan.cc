@@ -161,12 +161,18 @@ class Planner {
     for (const ValueId member : members) plan_.storage[static_cast<size_t>(member)] = storage;
   }
 
-  // The hull of the ranges of what convolutions put into a group; none when one of them is unknown.
+  // The hull of the ranges of what convolutions put into a group; none when one of them is unknown
+  // or no nonlinearity bounds it.
   std::optional<ActivationRange> RangeOf(const std::vector<ValueId>& members) const {
     ActivationRange hull;
     for (const ValueId member : members) {
       const int maker = maker_[static_cast<size_t>(member)];
       if (plan_.kinds[static_cast<size_t>(maker)] != NodeKind::kConvolution) continue;
+      // Without a nonlinearity the numbers spread far to both sides: 256 steps are too coarse for
+      // them.
+      if (graph_.nodes[static_cast<size_t>(maker)].epilogue.activation == Activation::kNone) {
+        return std::nullopt;
+      }
       const auto found = ranges_.find(graph_.value(member).name);
       if (found == ranges_.end()) return std::nullopt;
       hull.low = std::min(hull.low, found->second.low);

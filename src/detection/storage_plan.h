@@ -42,9 +42,10 @@ struct StoragePlan {
 
 // Values that data movements join (the pieces of a concatenation, the input and output of a pool)
 // share one storage, so that moving them is copying. With kInt8 a convolution runs in 8 bits when
-// the range of its input is known, unless it is a head: one without a nonlinearity behind it that
-// yields the network's outputs stays in the higher precision. The convolution that reads the image
-// may run in 8 bits, as 8-bit pixels are exact. `input` is how the image is stored.
+// the range of its input is known and no linear convolution made it, unless it is a head: one
+// without a nonlinearity behind it that yields the network's outputs stays in the higher precision.
+// The convolution that reads the image may run in 8 bits, as 8-bit pixels are exact. `input` is how
+// the image is stored.
 StoragePlan PlanStorage(const Graph& graph, NetworkPrecision precision,
                         const ActivationRanges& ranges, const Storage& input);
 
