@@ -70,11 +70,13 @@ void DetectionSource::Run() {
 void DetectionSource::Detect(const RgbdFrame& frame) {
   const auto start = std::chrono::steady_clock::now();
   StatusOr<Detections> found = Status::Error("");
+  // A user's detector may throw anything; tracking goes on without it.
   try {
     found = detector_->Detect(frame);
-  } catch (const std::exception&
-               failure) {  // a user's detector may throw anything; tracking goes on without it
+  } catch (const std::exception& failure) {
     found = Status::Error(failure.what());
+  } catch (...) {
+    found = Status::Error("the detector has thrown something that is not a std::exception");
   }
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - start;

@@ -1,0 +1,58 @@
+#include "dynamic/class_roles.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace msf {
+namespace {
+
+TEST(ClassRoles, FollowTheListsByCanonicalName) {
+  const StatusOr<ClassRoles> roles =
+      ClassRoles::Create({}, {"Person", "sofa", "aeroplane", "motorbike"});
+  ASSERT_TRUE(roles.ok());
+  EXPECT_EQ(roles->KindOf(0), ObjectKind::kKnown);
+  EXPECT_EQ(roles->KindOf(1), ObjectKind::kPotential) << "a couch by its other name";
+  EXPECT_EQ(roles->KindOf(2), std::nullopt) << "listed nowhere";
+  EXPECT_EQ(roles->KindOf(3), ObjectKind::kKnown);
+  EXPECT_EQ(roles->NameOf(1), "sofa") << "the detector's own name";
+}
+
+TEST(ClassRoles, WhatIsNoClassIsAMover) {
+  const StatusOr<ClassRoles> roles = ClassRoles::Create({}, {"person"});
+  ASSERT_TRUE(roles.ok());
+  for (const int class_id : {-1, 1}) {
+    EXPECT_EQ(roles->KindOf(class_id), std::nullopt);
+    EXPECT_EQ(roles->NameOf(class_id), "mover");
+  }
+}
+
+TEST(ClassRoles, AClassInBothListsIsKnown) {
+  DynamicOptions options;
+  options.known_classes = {"robot"};
+  options.potential_classes = {"robot", "box"};
+  const StatusOr<ClassRoles> roles = ClassRoles::Create(options, {"robot", "box"});
+  ASSERT_TRUE(roles.ok());
+  EXPECT_EQ(roles->KindOf(0), ObjectKind::kKnown);
+  EXPECT_EQ(roles->KindOf(1), ObjectKind::kPotential);
+}
+
+TEST(ClassRoles, ADetectorWithoutAnyListedClassIsAnError) {
+  const StatusOr<ClassRoles> roles = ClassRoles::Create({}, {"traffic light", "toaster"});
+  ASSERT_FALSE(roles.ok());
+  EXPECT_THAT(roles.message(), testing::HasSubstr("'traffic light'"));
+  EXPECT_THAT(roles.message(), testing::HasSubstr("dynamic.known_classes"));
+}
+
+TEST(ClassRoles, NoDetectorIsFine) {
+  EXPECT_TRUE(ClassRoles::Create({}, {}).ok());
+  EXPECT_EQ(ClassRoles().KindOf(0), std::nullopt);
+}
+
+TEST(ObjectKind, HasNames) {
+  EXPECT_STREQ(ToString(ObjectKind::kKnown), "known");
+  EXPECT_STREQ(ToString(ObjectKind::kPotential), "potential");
+  EXPECT_STREQ(ToString(ObjectKind::kUnknown), "unknown");
+}
+
+}  // namespace
+}  // namespace msf
