@@ -60,7 +60,8 @@ TEST(WholeBox, IsCutToTheImage) {
 TEST(ObjectMask, EmptyCoversNothing) { EXPECT_FALSE(ObjectMask().Covers({0, 0})); }
 
 TEST(MaskInBox, IsTheThingAndNotTheWallBesideIt) {
-  const ObjectMask mask = MaskInBox(ThingBeforeWall(), {}, kBox, std::nullopt, WithoutGrowing());
+  const ObjectMask mask =
+      MaskInBox(ThingBeforeWall(), {}, kBox, false, std::nullopt, WithoutGrowing());
   EXPECT_EQ(mask.area, 40 * 60);
   ExpectBox(mask.box, {240, 120, 400, 360});
   EXPECT_NEAR(mask.depth_m, kThing_m, 0.15);
@@ -69,7 +70,7 @@ TEST(MaskInBox, IsTheThingAndNotTheWallBesideIt) {
 TEST(MaskInBox, GrowsByOneCell) {
   ObjectMaskOptions options;
   options.grow_px = 4;
-  const ObjectMask mask = MaskInBox(ThingBeforeWall(), {}, kBox, std::nullopt, options);
+  const ObjectMask mask = MaskInBox(ThingBeforeWall(), {}, kBox, false, std::nullopt, options);
   EXPECT_EQ(mask.area, 40 * 60 + 2 * (40 + 60));
   ExpectBox(mask.box, {236, 116, 404, 364});
 }
@@ -79,7 +80,7 @@ TEST(MaskInBox, GrowsFartherWhereThereIsNoDepth) {
   options.grow_without_depth_px = 12;
   const CoarseDepth depth(
       DepthFrame(kWall_m, {{kThing_px, kThing_m}, {{kThing_px.br().x, kThing_px.y, 40, 240}, 0}}));
-  const ObjectMask mask = MaskInBox(depth, {}, kBox, std::nullopt, options);
+  const ObjectMask mask = MaskInBox(depth, {}, kBox, false, std::nullopt, options);
   EXPECT_TRUE(mask.Covers({411, 240}));
   EXPECT_FALSE(mask.Covers({412, 240}));
   EXPECT_FALSE(mask.Covers({239, 240})) << "the wall has depth";
@@ -88,7 +89,7 @@ TEST(MaskInBox, GrowsFartherWhereThereIsNoDepth) {
 TEST(MaskInBox, ReachesOnlyALittleBeyondTheBox) {
   // A tenth of 80 px on either side of the box.
   const ObjectMask mask =
-      MaskInBox(ThingBeforeWall(), {}, {280, 200, 360, 280}, std::nullopt, WithoutGrowing());
+      MaskInBox(ThingBeforeWall(), {}, {280, 200, 360, 280}, false, std::nullopt, WithoutGrowing());
   ExpectBox(mask.box, {272, 192, 368, 288});
 }
 
@@ -99,7 +100,7 @@ TEST(MaskInBox, ASmallStepInDepthIsPartOfTheThingALargeOneIsNot) {
     const CoarseDepth depth(
         DepthFrame(kWall_m, {{kThing_px, kThing_m}, {right_px, kThing_m + step_m}}));
     // So that only the left half has seeds.
-    return MaskInBox(depth, {}, {180, 120, 380, 360}, std::nullopt, WithoutGrowing()).area;
+    return MaskInBox(depth, {}, {180, 120, 380, 360}, false, std::nullopt, WithoutGrowing()).area;
   };
   EXPECT_EQ(area(0.07f), 40 * 60);
   EXPECT_EQ(area(0.3f), 20 * 60);
@@ -109,18 +110,18 @@ TEST(MaskInBox, TheNearerOfTwoLargeClustersUnlessAnotherWasThere) {
   const CoarseDepth depth(
       DepthFrame(5, {{{200, 100, 120, 280}, 2.04f}, {{320, 100, 120, 280}, 3.04f}}));
   const ImageBox box{200, 100, 440, 380};
-  const ObjectMask near = MaskInBox(depth, {}, box, std::nullopt, WithoutGrowing());
+  const ObjectMask near = MaskInBox(depth, {}, box, false, std::nullopt, WithoutGrowing());
   ExpectBox(near.box, {200, 100, 320, 380});
-  const ObjectMask followed = MaskInBox(depth, {}, box, 3.1f, WithoutGrowing());
+  const ObjectMask followed = MaskInBox(depth, {}, box, false, 3.1f, WithoutGrowing());
   ExpectBox(followed.box, {320, 100, 440, 380});
-  const ObjectMask nothing_there = MaskInBox(depth, {}, box, 7.0f, WithoutGrowing());
+  const ObjectMask nothing_there = MaskInBox(depth, {}, box, false, 7.0f, WithoutGrowing());
   ExpectBox(nothing_there.box, near.box);
 }
 
 TEST(MaskInBox, SmallPiecesAreLeftOut) {
   const CoarseDepth depth(
       DepthFrame(kWall_m, {{{240, 120, 80, 240}, kThing_m}, {{360, 200, 16, 16}, kThing_m}}));
-  const ObjectMask mask = MaskInBox(depth, {}, kBox, std::nullopt, WithoutGrowing());
+  const ObjectMask mask = MaskInBox(depth, {}, kBox, false, std::nullopt, WithoutGrowing());
   EXPECT_EQ(mask.area, 20 * 60);
   EXPECT_FALSE(mask.Covers({368, 208}));
 }
@@ -128,7 +129,7 @@ TEST(MaskInBox, SmallPiecesAreLeftOut) {
 TEST(MaskInBox, WithoutDepthTheBoxIsTheMask) {
   const CoarseDepth depth(DepthFrame(kWall_m, {{kThing_px, 0}}));
   const ObjectMask mask =
-      MaskInBox(depth, {}, {240, 120, 400, 360}, std::nullopt, WithoutGrowing());
+      MaskInBox(depth, {}, {240, 120, 400, 360}, false, std::nullopt, WithoutGrowing());
   EXPECT_EQ(mask.area, 40 * 60);
   EXPECT_EQ(mask.depth_m, 0);
 }
@@ -144,13 +145,13 @@ BlockVerdicts ConfirmedFrom(int x_px) {
 
 TEST(MaskInBox, WhatWasThereBeforeIsNotPartOfTheThing) {
   const ObjectMask mask =
-      MaskInBox(ThingBeforeWall(), ConfirmedFrom(352), kBox, std::nullopt, WithoutGrowing());
+      MaskInBox(ThingBeforeWall(), ConfirmedFrom(352), kBox, false, std::nullopt, WithoutGrowing());
   ExpectBox(mask.box, {240, 120, 352, 360});
 }
 
 TEST(MaskInBox, UnlessMostOfTheThingWas) {
   const ObjectMask mask =
-      MaskInBox(ThingBeforeWall(), ConfirmedFrom(272), kBox, std::nullopt, WithoutGrowing());
+      MaskInBox(ThingBeforeWall(), ConfirmedFrom(272), kBox, true, std::nullopt, WithoutGrowing());
   EXPECT_EQ(mask.area, 40 * 60);
 }
 
