@@ -478,12 +478,19 @@ void DynamicFilter::GatherEvidence(const Work& work) {
 
 // --- Labels
 
+// Nothing covers the whole image, unless it is seen to move.
+bool DynamicFilter::IsCredible(const ObjectTrack& track) const {
+  const double most = options_.mask.max_image_share;
+  if (track.mask.area > most * static_cast<double>(track.mask.cells.total())) return false;
+  const bool whole_image = track.box.area() > most * camera_.width * camera_.height;
+  return !whole_image || track.evidence.SpeaksForMotion();
+}
+
 void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
   result.mask = cv::Mat1b(work.view.depth.rows(), work.view.depth.cols(), static_cast<uint8_t>(0));
   cv::Mat1b settled = result.mask.clone();
-  const double cells = static_cast<double>(result.mask.total());
   for (const ObjectTrack& track : tracks_.tracks()) {
-    if (track.mask.empty() || track.mask.area > options_.mask.max_image_share * cells) continue;
+    if (track.mask.empty() || !IsCredible(track)) continue;
     if (track.Removes()) result.mask |= track.mask.cells;
     if (track.kind == ObjectKind::kKnown && track.state == MotionState::kStatic)
       settled |= track.mask.cells;

@@ -93,6 +93,7 @@ class DynamicFilter {
   void FindMovers(const Work& work);
   void FindIntruders(const Work& work);
   void GatherEvidence(const Work& work);
+  bool IsCredible(const ObjectTrack& track) const;
   void LabelPoints(const Work& work, DynamicResult& result) const;
   void ReadmitPoints(const Work& work, DynamicResult& result) const;
   void Describe(const Work& work, DynamicResult& result) const;

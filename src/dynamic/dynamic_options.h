@@ -79,7 +79,7 @@ struct ObjectMaskOptions {
   int grow_px = 4;
   int grow_without_depth_px = 12;
   double min_depth_share = 0.15;
-  double max_image_share = 0.8;
+  double max_image_share = 0.9;
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
