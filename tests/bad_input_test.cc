@@ -199,8 +199,10 @@ TEST_F(BadInputTest, AnInterruptedRunWritesWhatItHas) {
     lines.push_back(line.str());
   }
   WriteList(lines);
-  const Outcome outcome = RunShell("timeout --preserve-status -s INT 5 " MSF_PROGRAM " run " +
-                                   Path("data") + " --realtime --out " + Path("out"));
+  // In the foreground, or else it sends the signal twice, and the second one kills.
+  const Outcome outcome =
+      RunShell("timeout --foreground --preserve-status -s INT 5 " MSF_PROGRAM " run " +
+               Path("data") + " --realtime --out " + Path("out"));
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_THAT(outcome.output, HasSubstr("interrupted"));
   EXPECT_EQ(Report().at("interrupted"), true);
