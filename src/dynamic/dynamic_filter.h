@@ -22,7 +22,7 @@ struct DynamicObject {
   ObjectKind kind = ObjectKind::kUnknown;
   MotionState state = MotionState::kMoving;
   bool removed = false;  // its points are not used
-  bool bridged = false;  // not detected in the newest detections, but followed
+  bool bridged = false;  // followed in this image without a detection, and not seen to move
   float score = 0;
   ImageBox box;
   double moving_share = 0;

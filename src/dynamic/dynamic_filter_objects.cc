@@ -1,0 +1,229 @@
+// The part of DynamicFilter that follows and finds objects.
+#include <algorithm>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "dynamic/dynamic_filter.h"
+#include "dynamic/moving_clusters.h"
+
+namespace msf {
+namespace {
+
+ImageBox Moved(const ImageBox& box, const Eigen::Vector2f& by) {
+  return {box.x0 + by.x(), box.y0 + by.y(), box.x1 + by.x(), box.y1 + by.y()};
+}
+
+Eigen::Vector2f Centre(const ImageBox& box) {
+  return {0.5f * (box.x0 + box.x1), 0.5f * (box.y0 + box.y1)};
+}
+
+// Component-wise median.
+std::optional<Eigen::Vector2f> MedianOf(const std::vector<Eigen::Vector2f>& shifts,
+                                        size_t at_least) {
+  if (shifts.size() < at_least) return std::nullopt;
+  std::vector<float> x, y;
+  for (const Eigen::Vector2f& shift : shifts) {
+    x.push_back(shift.x());
+    y.push_back(shift.y());
+  }
+  const auto middle = static_cast<std::ptrdiff_t>(x.size() / 2);
+  std::nth_element(x.begin(), x.begin() + middle, x.end());
+  std::nth_element(y.begin(), y.begin() + middle, y.end());
+  return Eigen::Vector2f(x[middle], y[middle]);
+}
+
+// What the camera's motion alone does to a pixel of the past image: how far it moves until now.
+Eigen::Vector2f CameraShift(const Camera& camera, const Rigid3d& T_now_past,
+                            const Eigen::Vector2f& past_px, double depth_m) {
+  constexpr double kUnknownDepth_m = 2;
+  const Eigen::Vector3d p = T_now_past * camera.Unproject(camera.Undistort(past_px.cast<double>()),
+                                                          depth_m > 0 ? depth_m : kUnknownDepth_m);
+  if (p.z() <= 0) return Eigen::Vector2f::Zero();
+  return camera.Distort(camera.Project(p)).cast<float>() - past_px;
+}
+
+}  // namespace
+
+// Follows points on the object from the image of the detection to this one.
+ImageBox DynamicFilter::CarryBox(const ImageBox& box, const PastView& then,
+                                 const Work& work) const {
+  constexpr int kStep = 3;  // cells
+  constexpr size_t kEnough = 6;
+  const ObjectMask mask = MaskInBox(then.depth, {}, box, false, std::nullopt, options_.mask);
+  std::vector<Eigen::Vector2f> points;
+  for (int r = 0; r < mask.cells.rows; r += kStep) {
+    for (int c = 0; c < mask.cells.cols; c += kStep) {
+      const Eigen::Vector2f px((static_cast<float>(c) + 0.5f) * CoarseDepth::kCellSize,
+                               (static_cast<float>(r) + 0.5f) * CoarseDepth::kCellSize);
+      if (mask.cells(r, c) != 0 && box.Contains(px.x(), px.y())) points.push_back(px);
+    }
+  }
+  // Where a track was there then, it says where to look.
+  Eigen::Vector2f guess =
+      CameraShift(camera_, then.T_past_now.Inverse(), Centre(box), mask.depth_m);
+  float best_iou = static_cast<float>(options_.tracks.min_iou);
+  for (const ObjectTrack& track : tracks_.tracks()) {
+    const std::optional<ImageBox> past = track.BoxAt(then.frame);
+    if (!past || IntersectionOverUnion(*past, box) < best_iou) continue;
+    best_iou = IntersectionOverUnion(*past, box);
+    guess = Centre(track.box) - Centre(*past);
+  }
+  std::vector<Eigen::Vector2f> guesses;
+  for (const Eigen::Vector2f& px : points) guesses.emplace_back(px + guess);
+  const std::vector<FlowPoint> flow =
+      FollowPoints(then.image, work.view.image, points, guesses, flow_options_);
+  std::vector<Eigen::Vector2f> shifts;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (flow[i].found) shifts.emplace_back(flow[i].image_px - points[i]);
+  }
+  return Moved(box, MedianOf(shifts, kEnough).value_or(guess));
+}
+
+void DynamicFilter::MoveTracks(const Work& work) {
+  if (past_.empty()) return;
+  constexpr size_t kEnough = 4;
+  constexpr float kKeep = 0.7f;  // of the former velocity
+  const PastView& last = past_.back();
+  const auto dt_s = static_cast<float>(work.frame.time_s - last.time_s);
+  for (ObjectTrack& track : tracks_.tracks()) {
+    std::vector<Eigen::Vector2f> shifts;
+    for (const int i : work.all) {
+      if (work.flow[i].found && track.mask.Covers(work.flow[i].image_px))
+        shifts.emplace_back(work.features.image_px[i] - work.flow[i].image_px);
+    }
+    const Eigen::Vector2f by_camera =
+        CameraShift(camera_, last.T_past_now.Inverse(), Centre(track.box), track.mask.depth_m);
+    const std::optional<Eigen::Vector2f> seen = MedianOf(shifts, kEnough);
+    const Eigen::Vector2f shift = seen.value_or(by_camera + track.own_velocity_px_s * dt_s);
+    if (seen)
+      track.own_velocity_px_s =
+          kKeep * track.own_velocity_px_s + (1 - kKeep) * (*seen - by_camera) / dt_s;
+    track.box = Moved(track.box, shift);
+  }
+  // An object that has left the image.
+  std::erase_if(tracks_.tracks(), [&](const ObjectTrack& track) {
+    constexpr float kVisible_px = 8;
+    return track.box.x1 < kVisible_px || track.box.y1 < kVisible_px ||
+           track.box.x0 > static_cast<float>(camera_.width) - kVisible_px ||
+           track.box.y0 > static_cast<float>(camera_.height) - kVisible_px;
+  });
+}
+
+void DynamicFilter::GrowMasks(const Work& work) {
+  constexpr float kTrustedScore = 0.5f;
+  for (ObjectTrack& track : tracks_.tracks()) {
+    if (!options_.depth_split) {
+      track.mask = WholeBox(work.view.depth, track.box);
+      continue;
+    }
+    std::optional<float> expected_m;
+    if (track.mask.depth_m > 0) expected_m = track.mask.depth_m;
+    const bool trusted = track.confirmed_s == work.frame.time_s && track.score >= kTrustedScore;
+    track.mask =
+        MaskInBox(work.view.depth, work.background, track.box, trusted, expected_m, options_.mask);
+  }
+}
+
+void DynamicFilter::FindMovers(const Work& work) {
+  std::vector<TestedPoint> points;
+  for (const int i : work.all) {
+    if (work.motion[i] == PointMotion::kUntested) continue;
+    const bool on_object = std::any_of(
+        tracks_.tracks().begin(), tracks_.tracks().end(), [&](const ObjectTrack& track) {
+          return track.confirmations > 1 && track.mask.Covers(work.features.image_px[i]);
+        });
+    if (on_object) continue;
+    points.push_back({work.features.image_px[i], work.features.depth_m[i], Moves(work.motion[i])});
+  }
+  for (const std::vector<int>& cluster : FindMovingClusters(points, options_.tracks)) {
+    std::vector<Eigen::Vector2f> seeds;
+    std::vector<float> depths;
+    ImageBox box{1e9f, 1e9f, -1e9f, -1e9f};
+    for (const int k : cluster) {
+      const Eigen::Vector2f& px = points[k].image_px;
+      seeds.push_back(px);
+      if (points[k].depth_m > 0) depths.push_back(points[k].depth_m);
+      box = {std::min(box.x0, px.x()), std::min(box.y0, px.y()), std::max(box.x1, px.x()),
+             std::max(box.y1, px.y())};
+    }
+    if (depths.size() < 3) continue;
+    std::nth_element(depths.begin(),
+                     depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
+    const float margin_px = 12 + 0.25f * std::max(box.width(), box.height());
+    box = {box.x0 - margin_px, box.y0 - margin_px, box.x1 + margin_px, box.y1 + margin_px};
+    ObjectMask mask = MaskAroundPoints(work.view.depth, work.background, seeds,
+                                       depths[depths.size() / 2], box, options_.mask);
+    const ImageBox around = mask.box;
+    tracks_.TakeMover(around, std::move(mask), work.frame.time_s);
+  }
+}
+
+// Connected blocks through which the camera has seen before, outside the masks.
+void DynamicFilter::FindIntruders(const Work& work) {
+  if (work.background.rows() == 0) return;
+  constexpr int kCells = BlockVerdicts::kBlockCells;
+  constexpr auto kBlock_px = static_cast<float>(kCells * CoarseDepth::kCellSize);
+  cv::Mat1b intruders(work.background.rows(), work.background.cols(), static_cast<uint8_t>(0));
+  for (int r = 0; r < intruders.rows; ++r) {
+    for (int c = 0; c < intruders.cols; ++c) {
+      if (work.background.At(r, c) != BlockVerdict::kIntruder) continue;
+      const cv::Point cell(c * kCells, r * kCells);
+      const bool known = std::any_of(
+          tracks_.tracks().begin(), tracks_.tracks().end(), [&](const ObjectTrack& track) {
+            return track.kind != ObjectKind::kUnknown && track.Removes() && !track.mask.empty() &&
+                   track.mask.cells(cell) != 0;
+          });
+      if (!known) intruders(r, c) = 255;
+    }
+  }
+  cv::Mat labels, stats, centres;
+  const int count = cv::connectedComponentsWithStats(intruders, labels, stats, centres, 4, CV_32S);
+  for (int label = 1; label < count; ++label) {
+    if (stats.at<int>(label, cv::CC_STAT_AREA) < options_.background.min_intruder_blocks) continue;
+    std::vector<Eigen::Vector2f> seeds;
+    std::vector<float> depths;
+    for (int r = 0; r < labels.rows; ++r) {
+      for (int c = 0; c < labels.cols; ++c) {
+        if (labels.at<int>(r, c) != label) continue;
+        seeds.emplace_back((static_cast<float>(c) + 0.25f) * kBlock_px,
+                           (static_cast<float>(r) + 0.25f) * kBlock_px);
+        depths.push_back(work.view.depth.At(seeds.back()));
+      }
+    }
+    std::nth_element(depths.begin(),
+                     depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
+    const auto x = static_cast<float>(stats.at<int>(label, cv::CC_STAT_LEFT)) * kBlock_px,
+               y = static_cast<float>(stats.at<int>(label, cv::CC_STAT_TOP)) * kBlock_px;
+    const auto w = static_cast<float>(stats.at<int>(label, cv::CC_STAT_WIDTH)) * kBlock_px,
+               h = static_cast<float>(stats.at<int>(label, cv::CC_STAT_HEIGHT)) * kBlock_px;
+    const float margin_px = 16 + 0.5f * std::max(w, h);
+    ObjectMask mask = MaskAroundPoints(
+        work.view.depth, work.background, seeds, depths[depths.size() / 2],
+        {x - margin_px, y - margin_px, x + w + margin_px, y + h + margin_px}, options_.mask);
+    const ImageBox around = mask.box;
+    tracks_.TakeMover(around, std::move(mask), work.frame.time_s);
+  }
+}
+
+void DynamicFilter::GatherEvidence(const Work& work) {
+  for (ObjectTrack& track : tracks_.tracks()) {
+    track.evidence = {};
+    for (const int i : work.all) {
+      if (work.motion[i] == PointMotion::kUntested || !track.mask.Covers(work.features.image_px[i]))
+        continue;
+      ++track.evidence.tested;
+      track.evidence.moving += Moves(work.motion[i]) || Moves(work.slow_motion[i]);
+    }
+    if (track.mask.empty() || work.background.rows() == 0) continue;
+    for (int r = 0; r < work.background.rows(); ++r) {
+      for (int c = 0; c < work.background.cols(); ++c) {
+        if (track.mask.cells(r * BlockVerdicts::kBlockCells, c * BlockVerdicts::kBlockCells) == 0)
+          continue;
+        ++track.evidence.blocks;
+        track.evidence.new_blocks += work.background.At(r, c) == BlockVerdict::kIntruder;
+      }
+    }
+  }
+}
+
+}  // namespace msf
