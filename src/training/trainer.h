@@ -63,7 +63,7 @@ struct TrainOptions {
     visit(
         "imitation", imitation,
         "weight of the distance to the class logits of the network that gave the starting weights, "
-        "on pictures that are not rotated");
+        "which sees rotated pictures upright");
     visit("average_decay", average_decay,
           "decay of the moving average of weights that is kept in the end");
     visit("average_ramp", average_ramp, "updates over which that decay rises");
@@ -128,8 +128,7 @@ class Trainer {
   void Distill();
   void TrainEpoch(int epoch);
   EpochSampler Sampler(int epoch, double mosaic) const;
-  // Outputs for a batch, gradients recorded, and the distance to the teacher's on the pictures that
-  // are upright (0 without a teacher or such pictures).
+  // Outputs for a batch, gradients recorded, and the distance to the teacher's (0 without one).
   HeadOutputs ForwardForTraining(const Batch& batch, torch::Tensor& distance);
   std::set<std::string> TrainedParameters() const;
   // The blocks without starting weights: new convolutions with their norms.
