@@ -94,6 +94,11 @@ Status Trainer::Initialize(const NamedTensors& weights) {
   return Status::Ok();
 }
 
+Status Trainer::StartFrom(const NamedTensors& weights) {
+  new_tensors_.clear();
+  return network_.Load(weights);
+}
+
 void Trainer::InitializeBlocks() {
   constexpr int kBatches = 8;
   const std::vector<GraphLayer>& layers = network_.graph().layers;

@@ -111,6 +111,10 @@ class Trainer {
   // from it in Run().
   Status Initialize(const NamedTensors& weights);
 
+  // Goes on from the weights of an earlier training of the very same model instead: nothing is
+  // distilled. After Initialize(), whose network remains the teacher.
+  Status StartFrom(const NamedTensors& weights);
+
   // Trains until the end, writing DIR/checkpoint.pt after every epoch, DIR/curves.csv,
   // DIR/curves.svg, and at the end DIR/weights.pt (the moving average). Goes on from
   // DIR/checkpoint.pt where there is one of the same options; the result is then the same as
