@@ -357,22 +357,24 @@ double DynamicFilter::FeatureFactor() const {
   return std::min(options_.max_feature_factor, 1 / std::max(0.1, 1 - mask_share_));
 }
 
-FrameFeatures KeepStatic(const FrameFeatures& features, const PointLabels& labels,
-                         double min_static_probability, const Camera& camera) {
-  FrameFeatures kept;
+SplitFeatures SplitByProbability(const FrameFeatures& features, const PointLabels& labels,
+                                 double min_static_probability, const Camera& camera) {
+  SplitFeatures split;
   for (int i = 0; i < features.size(); ++i) {
-    if (labels.static_probability[i] < min_static_probability) continue;
-    kept.image_px.push_back(features.image_px[i]);
-    kept.uv_px.push_back(features.uv_px[i]);
-    kept.depth_m.push_back(features.depth_m[i]);
-    kept.u_right_px.push_back(features.u_right_px[i]);
-    kept.angle_rad.push_back(features.angle_rad[i]);
-    kept.level.push_back(features.level[i]);
-    kept.static_weight.push_back(labels.static_probability[i]);
-    kept.descriptors.push_back(features.descriptors[i]);
+    const bool is_used = labels.static_probability[i] >= min_static_probability;
+    FrameFeatures& part = is_used ? split.used : split.removed;
+    part.image_px.push_back(features.image_px[i]);
+    part.uv_px.push_back(features.uv_px[i]);
+    part.depth_m.push_back(features.depth_m[i]);
+    part.u_right_px.push_back(features.u_right_px[i]);
+    part.angle_rad.push_back(features.angle_rad[i]);
+    part.level.push_back(features.level[i]);
+    part.static_weight.push_back(labels.static_probability[i]);
+    part.descriptors.push_back(features.descriptors[i]);
   }
-  kept.BuildGrid(camera);
-  return kept;
+  split.used.BuildGrid(camera);
+  split.removed.BuildGrid(camera);
+  return split;
 }
 
 }  // namespace msf

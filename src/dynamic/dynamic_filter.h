@@ -117,9 +117,12 @@ class DynamicFilter {
   double mask_share_ = 0;                 // of the last frame
 };
 
-// The features that are static enough to be used, with their static probability as weight, and for
-// each its index in `features`.
-FrameFeatures KeepStatic(const FrameFeatures& features, const PointLabels& labels,
-                         double min_static_probability, const Camera& camera);
+// Features with their static probability as weight, in two parts.
+struct SplitFeatures {
+  FrameFeatures used;     // static enough
+  FrameFeatures removed;  // the others
+};
+SplitFeatures SplitByProbability(const FrameFeatures& features, const PointLabels& labels,
+                                 double min_static_probability, const Camera& camera);
 
 }  // namespace msf
