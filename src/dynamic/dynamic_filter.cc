@@ -54,7 +54,8 @@ DynamicFilter::DynamicFilter(const DynamicOptions& options, const Camera& camera
       seed_(seed),
       flow_options_(options.flow),
       tracks_(options.tracks, std::move(roles)),
-      background_(options.background, camera) {
+      background_(options.background, camera),
+      rays_(camera) {
   if (options.mode == "paper") {
     flow_options_.shrink = 1;
     flow_options_.window_px = options.paper_window_px;
@@ -141,6 +142,7 @@ void DynamicFilter::ClassifyByMotion(Work& work, const Rigid3d& T_last_now_predi
   if (work.has_detections) {
     tracks_.TakeDetections(work.detections, work.frame.time_s);
   }
+  ExcludePlanes(work);
   GrowMasks(work);
   if (options_.unknown_movers && result.camera_motion_reliable) {
     FindMovers(work);
@@ -331,9 +333,18 @@ void DynamicFilter::Describe(const Work& work, DynamicResult& result) const {
                         static_cast<double>(result.mask.total());
 }
 
+// Cells that cannot tell later what the static world looked like: those of objects, and those that
+// may be because they lie in the box of one and not on a plane.
+cv::Mat1b DynamicFilter::Doubtful(const Work& work, const DynamicResult& result) const {
+  if (work.in_box.empty()) return result.mask;
+  cv::Mat1b doubtful = work.in_box & ~work.on_plane;
+  cv::resize(doubtful, doubtful, result.mask.size(), 0, 0, cv::INTER_NEAREST);
+  return doubtful | result.mask;
+}
+
 void DynamicFilter::Remember(Work& work, const DynamicResult& result) {
   mask_share_ = result.mask_share;
-  last_mask_ = result.mask;
+  last_doubtful_ = Doubtful(work, result);
   tracks_.RememberBoxes(work.frame.id, static_cast<size_t>(options_.history_frames));
   past_.push_back(std::move(work.view));
   if (past_.size() > static_cast<size_t>(options_.history_frames)) past_.pop_front();
@@ -350,7 +361,7 @@ void DynamicFilter::TakePose(const std::optional<Rigid3d>& T_cw, bool same_world
     }
   }
   if (T_cw && !past_.empty())
-    background_.Remember(past_.back().time_s, past_.back().depth, last_mask_, *T_cw, steady_);
+    background_.Remember(past_.back().time_s, past_.back().depth, last_doubtful_, *T_cw, steady_);
 }
 
 double DynamicFilter::FeatureFactor() const {

@@ -9,6 +9,8 @@
 namespace msf {
 namespace {
 
+constexpr float kTrustedScore = 0.5f;
+
 ImageBox Moved(const ImageBox& box, const Eigen::Vector2f& by) {
   return {box.x0 + by.x(), box.y0 + by.y(), box.x1 + by.x(), box.y1 + by.y()};
 }
@@ -109,8 +111,35 @@ void DynamicFilter::MoveTracks(const Work& work) {
   });
 }
 
+// What lies on a large plane that shows outside the boxes, too, is not the object.
+void DynamicFilter::ExcludePlanes(Work& work) const {
+  if (options_.planes.max_planes == 0 || !options_.depth_split) return;
+  constexpr auto kBlock_px = static_cast<float>(CoarseDepth::kCellSize * BlockRays::kBlockCells);
+  const auto margin = static_cast<float>(options_.mask.box_margin);
+  cv::Mat1b in_box(rays_.rows(), rays_.cols(), static_cast<uint8_t>(0));
+  for (const ObjectTrack& track : tracks_.tracks()) {
+    // A weak detection may be clutter, which the past must be free to confirm.
+    if (track.kind != ObjectKind::kKnown || track.best_score < kTrustedScore) continue;
+    const float x = margin * track.box.width(), y = margin * track.box.height();
+    const cv::Point from(cv::Point2f(track.box.x0 - x, track.box.y0 - y) / kBlock_px),
+        to(cv::Point2f(track.box.x1 + x, track.box.y1 + y) / kBlock_px);
+    cv::rectangle(in_box, from, to, 255, cv::FILLED);
+  }
+  if (cv::countNonZero(in_box) == 0) return;
+  work.in_box = in_box;
+  work.on_plane = FindPlaneBlocks(work.view.depth, rays_, in_box, options_.planes,
+                                  seed_ + static_cast<uint64_t>(work.frame.id.value()));
+  if (work.background.rows() == 0) work.background = BlockVerdicts(rays_.rows(), rays_.cols());
+  for (int r = 0; r < rays_.rows(); ++r) {
+    for (int c = 0; c < rays_.cols(); ++c) {
+      const bool is_new = work.background.At(r, c) == BlockVerdict::kIntruder;
+      if (work.on_plane(r, c) != 0 && in_box(r, c) != 0 && !is_new)
+        work.background.Set(r, c, BlockVerdict::kConfirmed);
+    }
+  }
+}
+
 void DynamicFilter::GrowMasks(const Work& work) {
-  constexpr float kTrustedScore = 0.5f;
   for (ObjectTrack& track : tracks_.tracks()) {
     if (!options_.depth_split) {
       track.mask = WholeBox(work.view.depth, track.box);

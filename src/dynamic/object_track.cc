@@ -114,6 +114,7 @@ void ObjectTracks::TakeDetections(const std::vector<Detection>& detections, doub
     track->kind = *kind;
     track->class_id = detection.class_id;
     track->score = detection.score;
+    track->best_score = std::max(track->best_score, detection.score);
     track->box = detection.box;
     track->confirmed_s = time_s;
     ++track->confirmations;

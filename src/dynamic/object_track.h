@@ -31,8 +31,9 @@ struct ObjectTrack {
   int id = 0;
   int class_id = -1;  // of the detector; -1: a mover of unknown class
   ObjectKind kind = ObjectKind::kUnknown;
-  float score = 0;  // of the last detection
-  ImageBox box;     // in the present image, px
+  float score = 0;       // of the last detection
+  float best_score = 0;  // of all
+  ImageBox box;          // in the present image, px
   ObjectMask mask;
   MotionState state = MotionState::kMoving;
   Eigen::Vector2f own_velocity_px_s =
