@@ -54,8 +54,7 @@ DynamicFilter::DynamicFilter(const DynamicOptions& options, const Camera& camera
       seed_(seed),
       flow_options_(options.flow),
       tracks_(options.tracks, std::move(roles)),
-      background_(options.background, camera),
-      rays_(camera) {
+      background_(options.background, camera) {
   if (options.mode == "paper") {
     flow_options_.shrink = 1;
     flow_options_.window_px = options.paper_window_px;

@@ -94,6 +94,7 @@ class DynamicFilter {
   void MoveTracks(const Work& work);
   void ExcludePlanes(Work& work) const;
   void GrowMasks(const Work& work);
+  ObjectMaskOptions MaskOptionsFor(const ObjectTrack& track) const;
   void FindMovers(const Work& work);
   void FindIntruders(const Work& work);
   void GatherEvidence(const Work& work);
@@ -113,7 +114,6 @@ class DynamicFilter {
   ObjectTracks tracks_;
   std::deque<PastView> past_;  // newest last
   Background background_;
-  BlockRays rays_;
   Vector6d last_motion_ = Vector6d::Zero();  // twist from the last frame to the present one
   bool steady_ = false;                      // the camera turns slowly
   cv::Mat1b last_doubtful_;                  // cells of the last frame that may be objects

@@ -94,6 +94,7 @@ struct ObjectMaskOptions {
   double max_step_share = 0.03;
   double max_step_m = 0.02;
   double box_margin = 0.1;
+  double mover_margin = 0.3;
   int grow_px = 4;
   int grow_without_depth_px = 12;
   double min_depth_share = 0.15;
@@ -107,6 +108,8 @@ struct ObjectMaskOptions {
           "neighbouring cells of an object differ in depth by at most this share of it ...");
     visit("max_step_m", max_step_m, "... plus this, m");
     visit("box_margin", box_margin, "an object may reach beyond its box by this share of the box");
+    visit("mover_margin", mover_margin,
+          "the same for a mover of unknown class, whose box is only where motion was seen so far");
     visit("grow_px", grow_px, "the mask is grown by so much, px");
     visit("grow_without_depth_px", grow_without_depth_px,
           "and so far over pixels without depth, px");

@@ -66,6 +66,8 @@ class ObjectTracks {
   void TakeDetections(const std::vector<Detection>& detections, double time_s);
   // A cluster of moving points outside all masks: confirms the mover there or starts one.
   void TakeMover(const ImageBox& box, ObjectMask mask, double time_s);
+  // Movers of unknown class that cover each other at the same depth are one, the older one.
+  void MergeMovers();
   // The state of motion after `track.evidence` was filled.
   void UpdateStates(double time_s);
   // Forgets tracks that nothing has confirmed for a while; without bridging at once.
