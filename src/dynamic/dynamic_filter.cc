@@ -293,23 +293,25 @@ void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
   }
   if (options_.weights) return;
   for (float& probability : result.labels.static_probability)
-    probability = probability < options_.min_static_probability ? 0.0f : 1.0f;
+    probability = probability < static_cast<float>(options_.min_static_probability) ? 0.0f : 1.0f;
 }
 
 // Rather than losing track: those that do not move themselves first, and never those that do.
 void DynamicFilter::ReadmitPoints(const Work& work, DynamicResult& result) const {
   const PointLabels& labels = result.labels;
   const auto used = [&](int i) {
-    return labels.static_probability[i] >= options_.min_static_probability;
+    return labels.static_probability[i] >= static_cast<float>(options_.min_static_probability);
   };
   int missing = options_.min_static_features -
                 static_cast<int>(std::count_if(work.all.begin(), work.all.end(), used));
   if (missing <= 0) return;
+  const float weight =
+      std::max(kReadmittedWeight, static_cast<float>(options_.min_static_probability));
   for (const PointMotion wanted : {PointMotion::kStatic, PointMotion::kUntested}) {
     for (const int i : work.all) {
       if (missing == 0) return;
       if (used(i) || work.motion[i] != wanted || Moves(work.slow_motion[i])) continue;
-      result.labels.Set(i, PointReason::kReadmitted, kReadmittedWeight);
+      result.labels.Set(i, PointReason::kReadmitted, weight);
       --missing;
     }
   }
@@ -371,7 +373,7 @@ SplitFeatures SplitByProbability(const FrameFeatures& features, const PointLabel
                                  double min_static_probability, const Camera& camera) {
   SplitFeatures split;
   for (int i = 0; i < features.size(); ++i) {
-    const bool is_used = labels.static_probability[i] >= min_static_probability;
+    const bool is_used = labels.static_probability[i] >= static_cast<float>(min_static_probability);
     FrameFeatures& part = is_used ? split.used : split.removed;
     part.image_px.push_back(features.image_px[i]);
     part.uv_px.push_back(features.uv_px[i]);
