@@ -65,9 +65,7 @@ BlockVerdict Background::CompareWith(const View& view, const Eigen::Vector3d& p_
 
 BlockVerdicts Background::Compare(double time_s, const CoarseDepth& depth, const Rigid3d& T_cw,
                                   bool steady) const {
-  constexpr int kStep = BlockVerdicts::kBlockCells;
-  constexpr int kCell = CoarseDepth::kCellSize;
-  BlockVerdicts verdicts(depth.rows() / kStep, depth.cols() / kStep);
+  BlockVerdicts verdicts(rays_.rows(), rays_.cols());
   const std::vector<const View*> views = Choose(time_s);
   if (views.empty()) return verdicts;
   const Rigid3d T_wc = T_cw.Inverse();
@@ -75,10 +73,8 @@ BlockVerdicts Background::Compare(double time_s, const CoarseDepth& depth, const
   for (const View* view : views) T_past_now.push_back(view->T_cw * T_wc);
   for (int r = 0; r < verdicts.rows(); ++r) {
     for (int c = 0; c < verdicts.cols(); ++c) {
-      const double d = depth.metres()(r * kStep, c * kStep);
-      if (d <= 0) continue;
-      const Eigen::Vector2d px(c * kStep * kCell + kCell / 2.0, r * kStep * kCell + kCell / 2.0);
-      const Eigen::Vector3d p = camera_.Unproject(camera_.Undistort(px), d);
+      const Eigen::Vector3d p = rays_.Point(depth, r, c).cast<double>();
+      if (p.z() <= 0) continue;
       std::array<int, 3> votes{};
       for (size_t k = 0; k < views.size(); ++k) {
         const BlockVerdict verdict = CompareWith(*views[k], T_past_now[k] * p);
