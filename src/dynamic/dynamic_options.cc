@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
+#include <cmath>
 #include <type_traits>
 
 namespace msf {
@@ -20,9 +20,8 @@ struct NegativeFinder {
   template <typename Value>
   void operator()(const char* name, Value& value, const char*) {
     if constexpr (std::is_arithmetic_v<Value>) {
-      if (found.empty() && !(value >= 0 && value < std::numeric_limits<Value>::infinity()) &&
-          !std::is_same_v<Value, bool>)
-        found = section + name;
+      const auto number = static_cast<double>(value);
+      if (found.empty() && !(std::isfinite(number) && number >= 0)) found = section + name;
     } else {
       const std::string outer = section;
       section += std::string(name) + ".";
