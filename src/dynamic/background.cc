@@ -43,24 +43,30 @@ BlockVerdict Background::CompareWith(const View& view, const Eigen::Vector3d& p_
       options_.tolerance_m + options_.tolerance_per_m2 * p_past.z() * p_past.z();
   // Two cells around for the poses' errors: agreement needs one of the nearer ones, seeing through
   // needs all.
+  if (Agrees(view, cell, p_past.z(), tolerance_m)) return BlockVerdict::kConfirmed;
   int beyond = 0, valid = 0;
-  bool agrees = false;
-  for (int dr = -2; dr <= 2; ++dr) {
-    for (int dc = -2; dc <= 2; ++dc) {
-      const int r = cell.y + dr, c = cell.x + dc;
-      if (r < 0 || c < 0 || r >= view.depth.rows() || c >= view.depth.cols()) continue;
+  for (int r = std::max(0, cell.y - 2); r <= std::min(view.depth.rows() - 1, cell.y + 2); ++r) {
+    for (int c = std::max(0, cell.x - 2); c <= std::min(view.depth.cols() - 1, cell.x + 2); ++c) {
       const double d = view.depth.metres()(r, c);
       if (d <= 0) continue;
       ++valid;
       beyond += d > p_past.z() + 2 * tolerance_m;
-      const bool near = std::abs(dr) <= 1 && std::abs(dc) <= 1;
-      const bool removed = !view.removed.empty() && view.removed(r, c) != 0;
-      agrees = agrees || (near && !removed && std::abs(d - p_past.z()) <= tolerance_m);
     }
   }
-  if (agrees) return BlockVerdict::kConfirmed;
   constexpr int kEnough = 12;
   return valid >= kEnough && beyond == valid ? BlockVerdict::kIntruder : BlockVerdict::kUnknown;
+}
+
+bool Background::Agrees(const View& view, const cv::Point& cell, double depth_m,
+                        double tolerance_m) {
+  for (int r = std::max(0, cell.y - 1); r <= std::min(view.depth.rows() - 1, cell.y + 1); ++r) {
+    for (int c = std::max(0, cell.x - 1); c <= std::min(view.depth.cols() - 1, cell.x + 1); ++c) {
+      const double d = view.depth.metres()(r, c);
+      const bool removed = !view.removed.empty() && view.removed(r, c) != 0;
+      if (d > 0 && !removed && std::abs(d - depth_m) <= tolerance_m) return true;
+    }
+  }
+  return false;
 }
 
 BlockVerdicts Background::Compare(double time_s, const CoarseDepth& depth, const Rigid3d& T_cw,

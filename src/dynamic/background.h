@@ -67,6 +67,8 @@ class Background {
     bool steady = false;
   };
   std::vector<const View*> Choose(double time_s) const;
+  // Whether the view shows the depth in the cell or beside it.
+  static bool Agrees(const View& view, const cv::Point& cell, double depth_m, double tolerance_m);
   BlockVerdict CompareWith(const View& view, const Eigen::Vector3d& p_past) const;
 
   BackgroundOptions options_;

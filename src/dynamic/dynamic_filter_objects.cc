@@ -33,6 +33,15 @@ bool IsEstablished(const ObjectTrack& track) {
   return false;
 }
 
+// The box, wider by `margin` of itself on each side, in blocks.
+cv::Rect BlocksAround(const ImageBox& box, float margin) {
+  constexpr auto kBlock_px = static_cast<float>(CoarseDepth::kCellSize * BlockRays::kBlockCells);
+  const float x = margin * box.width(), y = margin * box.height();
+  const cv::Point from(cv::Point2f(box.x0 - x, box.y0 - y) / kBlock_px),
+      to(cv::Point2f(box.x1 + x, box.y1 + y) / kBlock_px);
+  return {from, to + cv::Point(1, 1)};
+}
+
 // Component-wise median.
 std::optional<Eigen::Vector2f> MedianOf(const std::vector<Eigen::Vector2f>& shifts,
                                         size_t at_least) {
@@ -125,24 +134,26 @@ void DynamicFilter::MoveTracks(const Work& work) {
   });
 }
 
-// What lies on a large plane that shows outside the boxes, too, is not the object.
+// What lies on a large plane that goes on outside is not the object.
 void DynamicFilter::ExcludePlanes(Work& work) const {
   if (options_.planes.max_planes == 0 || !options_.depth_split) return;
-  constexpr auto kBlock_px = static_cast<float>(CoarseDepth::kCellSize * BlockRays::kBlockCells);
+  constexpr double kMostlyCovered = 0.7;
   const BlockRays& rays = background_.rays();
-  cv::Mat1b in_box(rays.rows(), rays.cols(), static_cast<uint8_t>(0));
+  cv::Mat1b in_box(rays.rows(), rays.cols(), static_cast<uint8_t>(0)), in_mover = in_box.clone();
   for (const ObjectTrack& track : tracks_.tracks()) {
     if (!IsEstablished(track)) continue;
     const auto margin = static_cast<float>(MaskOptionsFor(track).box_margin);
-    const float x = margin * track.box.width(), y = margin * track.box.height();
-    const cv::Point from(cv::Point2f(track.box.x0 - x, track.box.y0 - y) / kBlock_px),
-        to(cv::Point2f(track.box.x1 + x, track.box.y1 + y) / kBlock_px);
-    cv::rectangle(in_box, from, to, 255, cv::FILLED);
+    const cv::Rect blocks = BlocksAround(track.box, margin);
+    cv::rectangle(in_box, blocks, 255, cv::FILLED);
+    if (track.kind == ObjectKind::kUnknown) cv::rectangle(in_mover, blocks, 255, cv::FILLED);
   }
   if (cv::countNonZero(in_box) == 0) return;
   work.in_box = in_box;
-  work.on_plane = FindPlaneBlocks(work.view.depth, rays, in_box, options_.planes,
-                                  seed_ + static_cast<uint64_t>(work.frame.id.value()));
+  // Where boxes cover almost everything there is no outside to go on in; people are not flat.
+  const bool outside_shows = cv::countNonZero(in_box) < kMostlyCovered * in_box.total();
+  work.on_plane =
+      FindPlaneBlocks(work.view.depth, rays, outside_shows ? in_box : in_mover, options_.planes,
+                      seed_ + static_cast<uint64_t>(work.frame.id.value()));
   if (work.background.rows() == 0) work.background = BlockVerdicts(rays.rows(), rays.cols());
   for (int r = 0; r < rays.rows(); ++r) {
     for (int c = 0; c < rays.cols(); ++c) {
