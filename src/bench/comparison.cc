@@ -35,7 +35,8 @@ StatusOr<Runs> ReadResults(const fs::path& file, bool with_times) {
       }
       times = nlohmann::json::parse(beside).at("tasks");
     }
-    for (const nlohmann::json& task : nlohmann::json::parse(stream).at("tasks")) {
+    const nlohmann::json json = nlohmann::json::parse(stream);
+    for (const nlohmann::json& task : json.at("tasks")) {
       TaskResult result = ResultFromJson(task);
       if (with_times) result.timing = TimingFromJson(times.at(result.id));
       runs[{result.sequence, result.variant}].push_back(std::move(result));

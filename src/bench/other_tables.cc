@@ -187,7 +187,7 @@ std::vector<Cell> RuntimeRow(const std::string& sequence, const SuiteVariant& va
           FormatMedian(rate, 1),
           FormatMedian(TimeOf(runs, &TaskTiming::detector_ms), 1),
           FormatMedian(age, 0),
-          energy ? FormatMedian(energy, 0) : (runs.front()->ok() ? "not available" : ""),
+          energy ? FormatMedian(energy, 0) : (mode == "realtime" ? "not available" : ""),
           FormatCoverage(runs)};
 }
 

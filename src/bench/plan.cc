@@ -257,8 +257,8 @@ StatusOr<Plan> ReadPlan(const fs::path& file) {
   try {
     std::ifstream stream(file);
     if (!stream) return Status::Error(file.string() + ": there is no such plan");
-    for (const nlohmann::json& task : nlohmann::json::parse(stream).at("tasks"))
-      plan.tasks.push_back(TaskFromJson(task));
+    const nlohmann::json json = nlohmann::json::parse(stream);
+    for (const nlohmann::json& task : json.at("tasks")) plan.tasks.push_back(TaskFromJson(task));
   } catch (const nlohmann::json::exception& error) {
     return Status::Error(file.string() + ": is no plan: " + error.what());
   }
