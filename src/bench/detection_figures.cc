@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kModels[] = {"yolov8n_voc.onnx", "yolov8n_msf_voc.onnx"};
 constexpr const char* kModelNames[] = {"YOLOv8n", "YOLOv8n + MSFConv"};
+constexpr char kPhotographs[] = " They may show real people: think before passing them on.";
 constexpr int kPictures = 4, kWidth_px = 232;
 constexpr double kHeight_px = 174, kGap = 8, kTop = 44, kRowTitle = 26, kLimit_s = 300;
 

@@ -15,7 +15,6 @@ struct Figure {
   std::string title;
   std::string note;
   std::string svg;
-  bool holds_photographs = false;  // of a recording: not for publishing without a thought
 };
 
 // Figure 4: what the detectors find, in pictures of some sequences.

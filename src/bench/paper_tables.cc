@@ -128,7 +128,7 @@ Table ComparedTable(const BenchResults& results, const std::vector<PublishedErro
     table.columns.push_back(name == results.suite.ours ? "our " + name : name);
   const auto add = [&](const std::string& name, const std::string& published,
                        const std::string& sequence) {
-    std::vector<Cell> row = {name};
+    std::vector<Cell> row = {Cell(name, sequence.empty())};
     for (const std::string& system : systems) {
       const PublishedError* e = Find(errors, published, system);
       row.push_back(e == nullptr ? Cell()

@@ -23,11 +23,11 @@ table { border-collapse: collapse; font-size: 12.5px; }
 th, td { border: 1px solid #ccc; padding: 3px 6px; text-align: right; }
 th { background: #eef1f5; font-weight: 600; }
 th.group { text-align: center; }
-td.label { text-align: left; }
+.label { text-align: left; }
 td.published, tr.published td { font-style: italic; color: #555; background: #faf6ea; }
 .wide { overflow-x: auto; }
 .note { font-size: 12.5px; color: #555; max-width: 1000px; margin: 4px 0; }
-.missing, .problem { border-left: 4px solid #d08a00; background: #fdf5e2; padding: 4px 12px; }
+.missing, .problem { border-left: 4px solid #d08a00; background: #fdf5e2; padding: 4px 12px 4px 30px; }
 .problem { border-color: #c33; background: #fdecea; }
 figure { margin: 16px 0; }
 figure img { max-width: 100%; height: auto; border: 1px solid #ddd; }
@@ -52,11 +52,12 @@ std::string List(const std::vector<std::string>& lines, const char* kind) {
 
 // As pictures rather than parts of the page: names inside of one do not meet those of another.
 std::string FigureToHtml(const Figure& figure) {
+  // The title is in the picture.
+  const std::string caption =
+      figure.note.empty() ? "" : "<figcaption>" + EscapeHtml(figure.note) + "</figcaption>";
   return fmt::format(
-      "<figure id=\"{}\"><img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\">\n"
-      "<figcaption><b>{}</b>{}</figcaption></figure>\n",
-      figure.id, EscapeHtml(figure.title), EncodeBase64(figure.svg), EscapeHtml(figure.title),
-      figure.note.empty() ? "" : ". " + EscapeHtml(figure.note));
+      "<figure id=\"{}\"><img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\">{}</figure>\n",
+      figure.id, EscapeHtml(figure.title), EncodeBase64(figure.svg), caption);
 }
 
 std::string Navigation(const BenchResults& results) {

@@ -15,8 +15,8 @@ void AddList(const char* title, const std::vector<std::string>& lines, std::stri
 void AddFigures(const std::vector<Figure>& figures, bool of_sequences, std::string& text) {
   for (const Figure& figure : figures) {
     if (figure.section.empty() == of_sequences) continue;
-    text += fmt::format("![{}](figures/{}.svg)\n\n{}{}\n\n", figure.title, figure.id, figure.title,
-                        figure.note.empty() ? "" : ". " + figure.note);
+    text += fmt::format("![{}](figures/{}.svg)\n\n", figure.title, figure.id);
+    if (!figure.note.empty()) text += figure.note + "\n\n";
   }
 }
 

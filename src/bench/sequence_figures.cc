@@ -206,8 +206,7 @@ std::optional<Figure> WorstFramesFigure(const SuiteSequence& sequence, const std
                             worst.time_s - dataset->time_s(0), worst.error_m));
     left += kThumbnail_px + kGap;
   }
-  return Figure{"worst_" + sequence.name, sequence.name, title, "", canvas.ToString(),
-                sequence.scenario.empty()};
+  return Figure{"worst_" + sequence.name, sequence.name, title, "", canvas.ToString()};
 }
 
 }  // namespace

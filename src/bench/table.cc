@@ -49,7 +49,11 @@ std::string HtmlHead(const Table& table) {
     html += "</tr>\n";
   }
   html += "<tr>";
-  for (const std::string& column : table.columns) html += "<th>" + EscapeHtml(column) + "</th>";
+  for (size_t i = 0; i < table.columns.size(); ++i) {
+    html += fmt::format("<th class=\"{}\">{}</th>",
+                        i < static_cast<size_t>(table.num_label_columns) ? "label" : "",
+                        EscapeHtml(table.columns[i]));
+  }
   return html + "</tr>\n</thead>\n";
 }
 
