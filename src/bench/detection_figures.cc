@@ -85,10 +85,10 @@ std::vector<Figure> DetectionFigures(const fs::path& out, const BenchResults& re
     std::error_code ignored;
     fs::remove_all(out / "detections", ignored);
     if (svg.empty()) continue;
-    figures.push_back(
-        {"figure4_" + sequence.name, "", title,
-         fmt::format("Pictures spread over the sequence; {} and {}", kModels[0], kModels[1]), svg,
-         sequence.scenario.empty()});
+    figures.push_back({"figure4_" + sequence.name, "", title,
+                       fmt::format("Pictures spread over the sequence; {} and {}.{}", kModels[0],
+                                   kModels[1], sequence.scenario.empty() ? kPhotographs : ""),
+                       svg});
   }
   return figures;
 }
