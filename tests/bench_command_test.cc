@@ -70,7 +70,8 @@ TEST_F(BenchTest, CrashesAndHangsAreReportedAndTheRestCompletes) {
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("walking/crash/0: crashed: killed by signal 11"),
                                     HasSubstr("calm/hang/0: timed_out"), HasSubstr("8/8")));
   int num_ok = 0;
-  for (const auto& task : Results("out").at("tasks")) {
+  const nlohmann::json results = Results("out");
+  for (const auto& task : results.at("tasks")) {
     if (task.at("status") != "ok") continue;
     ++num_ok;
     EXPECT_EQ(task.at("coverage"), 1) << task;
@@ -203,7 +204,7 @@ TEST_F(BenchTest, ReportOpensInABrowser) {
 class SlurmNode {
  public:
   explicit SlurmNode(std::string folder) : folder_(std::move(folder)) {
-    start_ = RunShell(kScript + "start " + folder_ + " 2");
+    start_ = RunShell(kScript + "start " + folder_);
   }
   ~SlurmNode() { RunShell(kScript + "stop " + folder_); }
   SlurmNode(const SlurmNode&) = delete;
