@@ -225,7 +225,8 @@ TEST_F(BenchTest, SlurmGivesWhatJobsGive) {
   const std::string suite = Suite("s", kOffAndFull, "repeats: 5\n");
   const Outcome local = Bench(suite, "local", "--jobs 2");
   ASSERT_EQ(local.exit_code, 0) << local.output;
-  ExpectSentence(RunShell("SLURM_CONF=/no/such " MSF_PROGRAM " bench " + suite + " --out " +
+  const std::string nothing = folder_.Write("nothing.conf", "").string();
+  ExpectSentence(RunShell("SLURM_CONF=" + nothing + " " MSF_PROGRAM " bench " + suite + " --out " +
                           Path("no") + " --sequences " + shared_.string() + " --slurm"),
                  "Slurm cannot be asked");
   const SlurmNode node(Path("slurm"));
