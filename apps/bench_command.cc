@@ -23,7 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // Looked for after --root and MSF_SLAM_DATASETS: where the project's own scripts unpack sequences.
-constexpr const char* kUsualRoots[] = {"data", "build/data", "build/sequences"};
+constexpr const char* kUsualRoots[] = {"data", "build/data", "build/sequences",
+                                       "build/test/sequences"};
 
 struct BenchArguments {
   std::string suite;
@@ -131,18 +132,19 @@ void Conclude(const fs::path& out, const BenchResults& results) {
   }
 }
 
+// What the processes that bench starts do.
+void DoTask(const BenchArguments& arguments) {
+  const Plan plan = Require(ReadPlan(arguments.out / "plan.json"));
+  const Task* task = plan.Find(arguments.task);
+  if (task == nullptr) throw CommandFailure("the plan has no task '" + arguments.task + "'");
+  Require(RunTask(arguments.out, *task));
+}
+
 void Bench(BenchArguments& arguments) {
-  if (arguments.out.empty()) throw CommandFailure("name the folder for the results with --out");
-  arguments.out = fs::absolute(arguments.out).lexically_normal();
-  if (!arguments.task.empty()) {
-    const Plan plan = Require(ReadPlan(arguments.out / "plan.json"));
-    const Task* task = plan.Find(arguments.task);
-    if (task == nullptr) throw CommandFailure("the plan has no task '" + arguments.task + "'");
-    Require(RunTask(arguments.out, *task));
-    return;
-  }
   BenchResults results;
   results.suite = ResolveSuite(arguments);
+  if (arguments.out.empty()) arguments.out = fs::path("out") / "bench" / results.suite.name;
+  arguments.out = fs::absolute(arguments.out).lexically_normal();
   results.build = ReadBuildInfo();
   results.machine = ReadMachine();
   std::vector<Peer> peers;
@@ -198,7 +200,8 @@ void AddCompareCommand(CLI::App& bench) {
 void AddOptions(CLI::App& command, BenchArguments& arguments) {
   command.add_option("SUITE", arguments.suite,
                      fmt::format("a YAML file or one of: {}", fmt::join(SuiteNames(), ", ")));
-  command.add_option("--out", arguments.out, "folder for results and report");
+  command.add_option("--out", arguments.out,
+                     "folder for results and report; default: out/bench/<name of the suite>");
   command.add_option("--jobs", arguments.jobs, "tasks at a time; those in real time run alone")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));
@@ -246,7 +249,11 @@ void AddBenchCommand(CLI::App& app) {
   AddCompareCommand(*command);
   command->footer("Keys of a suite, with defaults:\n" + DescribeOptions<Suite>());
   command->callback([arguments, command] {
-    if (command->get_subcommands().empty()) Bench(*arguments);
+    if (!command->get_subcommands().empty()) return;
+    if (arguments->task.empty())
+      Bench(*arguments);
+    else
+      DoTask(*arguments);
   });
 }
 

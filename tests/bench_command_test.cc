@@ -143,8 +143,7 @@ TEST_F(BenchTest, TakesTrajectoriesOfOtherSystems) {
 }
 
 TEST_F(BenchTest, MistakesAreSentences) {
-  ExpectSentence(RunProgram("bench"), "name the folder for the results");
-  ExpectSentence(RunProgram("bench --out " + Path("o")), "name a suite");
+  ExpectSentence(RunProgram("bench"), "name a suite");
   ExpectSentence(Bench("no_such_suite", "o"), "tum_dynamic");
   ExpectSentence(Bench(folder_.Write("bad.yaml", "repeat: 1\n").string(), "o"),
                  "unknown option 'repeat'");

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 std::string FormatDuration(double seconds) {
-  const auto s = static_cast<int64_t>(seconds + 0.5);
+  const int64_t s = std::llround(seconds);
   if (s < 3600) return fmt::format("{}:{:02}", s / 60, s % 60);
   return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
@@ -65,6 +66,7 @@ TaskResult ResultOrLost(const fs::path& out, const Task& task) {
 void RunBatch(const fs::path& out, const std::vector<Task>& tasks, int jobs,
               TaskProgress& progress) {
   std::vector<ProcessSpec> specs;
+  specs.reserve(tasks.size());
   for (const Task& task : tasks) {
     specs.push_back({{ThisProgram().string(), "bench", "--task", task.id, "--out", out.string()},
                      out / "logs" / (WithoutSlashes(task.id) + ".txt"),
@@ -164,6 +166,7 @@ void RunTasks(const fs::path& out, const std::vector<Task>& tasks, int jobs, siz
 
 std::vector<TaskResult> CollectResults(const fs::path& out, const Plan& plan) {
   std::vector<TaskResult> results;
+  results.reserve(plan.tasks.size());
   for (const Task& task : plan.tasks) results.push_back(ResultOrLost(out, task));
   return results;
 }

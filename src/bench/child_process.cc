@@ -54,6 +54,7 @@ int Start(const ProcessSpec& spec, Child& child) {
   if (log < 0) return errno;
   std::vector<std::string> words = spec.command;
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   child.start = Clock::now();

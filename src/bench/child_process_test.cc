@@ -55,6 +55,7 @@ TEST_F(ChildProcessTest, KillsWhatHangsAndWhatThatStarted) {
 
 TEST_F(ChildProcessTest, RunsSeveralAtATimeAndReportsEach) {
   std::vector<ProcessSpec> specs;
+  specs.reserve(7);
   for (int i = 0; i < 7; ++i) specs.push_back(Shell("exit " + std::to_string(i)));
   specs[3].time_limit_s = 100;
   std::vector<int> codes(7, -1);

@@ -80,6 +80,7 @@ double AllowedChange(const Measure& measure, double before, const ComparisonOpti
 
 std::vector<const TaskResult*> Pointers(const std::vector<TaskResult>& results) {
   std::vector<const TaskResult*> pointers;
+  pointers.reserve(results.size());
   for (const TaskResult& result : results) pointers.push_back(&result);
   return pointers;
 }

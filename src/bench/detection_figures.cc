@@ -1,6 +1,7 @@
 // Figure 4: what the detectors find.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -69,8 +70,10 @@ void DrawPicture(SvgCanvas& canvas, const Eigen::Vector2d& at, const cv::Mat& pi
         first, {last.x(), first.y()}, last, {first.x(), last.y()}, first};
     canvas.Polyline(box, {color, 2});
     const std::string label = fmt::format("{} {:.2f}", name, object.at(1).get<double>());
-    canvas.FillBox({first.x(), first.y(), 6.6 * static_cast<double>(label.size()) + 6, 15}, color);
-    canvas.Text({first.x() + 3, first.y() + 12}, label, {.size = 11, .color = {255, 255, 255}});
+    const double width = 6.6 * static_cast<double>(label.size()) + 6;
+    const double left = std::min(first.x(), at.x() + kWidth_px - width);
+    canvas.FillBox({left, first.y(), width, 15}, color);
+    canvas.Text({left + 3, first.y() + 12}, label, {.size = 11, .color = {255, 255, 255}});
   }
 }
 

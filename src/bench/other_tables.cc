@@ -1,5 +1,6 @@
 // The tables that are about more than trajectories: overview, thresholds, detectors, run time.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <functional>
@@ -221,6 +222,29 @@ Table OverviewTable(const BenchResults& results) {
   return table;
 }
 
+Table VariantTable(const BenchResults& results) {
+  Table table{
+      "variants",
+      "Variants",
+      "Options as given to msf-slam run; all others have their defaults. config.yaml beside "
+      "each run has every option.",
+      {},
+      {"Variant", "Options", "About"},
+      {},
+      3};
+  for (const SuiteVariant& variant : results.suite.variants) {
+    const auto& tasks = results.plan.tasks;
+    const auto task = std::find_if(tasks.begin(), tasks.end(), [&](const Task& t) {
+      return t.variant == variant.name && !t.is_detector;
+    });
+    if (task == tasks.end()) continue;
+    std::string options = fmt::format("{}", fmt::join(task->arguments, " "));
+    if (!variant.program.empty()) options = variant.program + ": " + options;
+    table.rows.push_back({variant.name, options, variant.about});
+  }
+  return table;
+}
+
 std::vector<Table> ThresholdTables(const BenchResults& results, const PublishedFigures& published) {
   std::vector<Table> tables;
   for (const SuiteSequence& sequence : results.suite.sequences) {
@@ -240,10 +264,13 @@ std::vector<Table> DetectorTables(const BenchResults& results, const PublishedFi
     if (result.id.starts_with("detectors/")) measured.push_back(DetectorRow(result));
   }
   if (measured.empty()) return {};
+  const DetectorData& data = results.suite.detector_data;
   const std::string note = fmt::format(
-      "In italics: as published, on all of VOC2007 at 640x640 and on a GPU. Measured: {} at {}, on "
+      "In italics: as published, on all of VOC2007 at 640x640 and on a GPU. Measured: {}{} at {}, "
+      "on "
       "one thread of this CPU; parameters and GFLOPs (2 per multiply-add) at 640x640.",
-      results.suite.detector_data.folder, results.suite.detector_data.size);
+      data.limit > 0 ? fmt::format("the first {} test images of ", data.limit) : "", data.folder,
+      data.size);
   const std::vector<std::string> columns = {"Model",      "Source",     "P %",    "R %", "mAP50 %",
                                             "mAP50-95 %", "params [M]", "GFLOPs", "FPS"};
   Table three{"table3", "Table 3: the detector with and without MSFConv", note, {}, columns, {}, 2};

@@ -12,6 +12,9 @@ namespace msf {
 // All variants of all sequences, one row each: what the other tables choose from.
 Table OverviewTable(const BenchResults& results);
 
+// What each variant is: its mode, options and purpose.
+Table VariantTable(const BenchResults& results);
+
 // Table 1, once per sequence that was run with several thresholds.
 std::vector<Table> ThresholdTables(const BenchResults& results, const PublishedFigures& published);
 // Tables 3 and 4; none when no detector was scored.

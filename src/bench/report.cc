@@ -37,6 +37,7 @@ Status WriteReport(const fs::path& out, const BenchResults& results) {
   std::vector<Table> tables;
   if (!results.suite.sequences.empty()) tables.push_back(OverviewTable(results));
   for (Table& table : PaperTables(results, *published)) tables.push_back(std::move(table));
+  if (!results.suite.sequences.empty()) tables.push_back(VariantTable(results));
   MSF_RETURN_IF_ERROR(MakeFolder(out / "tables"));
   for (const Table& table : tables)
     MSF_RETURN_IF_ERROR(

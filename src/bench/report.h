@@ -20,6 +20,8 @@ struct ReportFacts {
   std::vector<std::string> problems;  // tasks that did not succeed, and why
 };
 ReportFacts GatherFacts(const BenchResults& results);
+// Which tables of the paper are not among these, and the suites that have them; empty for none.
+std::string DescribeAbsentTables(const std::vector<Table>& tables);
 
 std::string MarkdownReport(const BenchResults& results, const std::vector<Table>& tables,
                            const std::vector<Figure>& figures);

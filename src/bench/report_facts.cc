@@ -18,10 +18,10 @@ ReportFacts GatherFacts(const BenchResults& results) {
   const auto alone = std::count_if(results.plan.tasks.begin(), results.plan.tasks.end(),
                                    [](const Task& task) { return task.alone; });
   if (alone > 0) {
-    facts.about.push_back(
-        fmt::format("{} tasks ran one by one, in real time; the times of the others are those of a "
-                    "machine that may have done something else as well",
-                    alone));
+    facts.about.push_back(fmt::format(
+        "{} tasks ran one by one because their times count; the times of the others are "
+        "those of a machine that did something else as well",
+        alone));
   }
   for (const MissingSequence& missing : results.plan.missing)
     facts.missing.push_back(DescribeMissing(missing));
@@ -31,6 +31,24 @@ ReportFacts GatherFacts(const BenchResults& results) {
   }
   facts.problems.insert(facts.problems.end(), results.peer_notes.begin(), results.peer_notes.end());
   return facts;
+}
+
+std::string DescribeAbsentTables(const std::vector<Table>& tables) {
+  struct Source {
+    const char* id;  // how those of the table begin
+    const char* text;
+  };
+  constexpr Source kSources[] = {{"table1_", "table 1 (suite threshold)"},
+                                 {"table3", "tables 3 and 4 (suite detector)"},
+                                 {"table5", "tables 5 to 7 (suite tum_dynamic)"},
+                                 {"table8", "table 8 (suite runtime)"}};
+  std::string text;
+  for (const Source& source : kSources) {
+    const auto is_it = [&](const Table& table) { return table.id.starts_with(source.id); };
+    if (std::any_of(tables.begin(), tables.end(), is_it)) continue;
+    text += std::string(text.empty() ? "Not in this suite: " : ", ") + source.text;
+  }
+  return text.empty() ? "" : text + ". Table 2 of the paper is an algorithm.";
 }
 
 }  // namespace msf

@@ -95,6 +95,7 @@ std::string HtmlReport(const BenchResults& results, const std::vector<Table>& ta
     html += "<h3>Did not succeed</h3>\n" + List(facts.problems, "problem");
   html += "<h2 id=\"tables\">Tables</h2>\n";
   for (const Table& table : tables) html += TableToHtml(table);
+  html += "<p class=\"note\">" + EscapeHtml(DescribeAbsentTables(tables)) + "</p>\n";
   html += "<h2 id=\"figures\">Figures</h2>\n";
   for (const Figure& figure : figures) {
     if (figure.section.empty()) html += FigureToHtml(figure);

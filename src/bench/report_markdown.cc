@@ -31,6 +31,9 @@ std::string MarkdownReport(const BenchResults& results, const std::vector<Table>
   AddList("Did not succeed", facts.problems, text);
   text += "## Tables\n\n";
   for (const Table& table : tables) text += TableToMarkdown(table);
+  if (const std::string absent = DescribeAbsentTables(tables); !absent.empty())
+    text += absent + "\n\n";
+  if (figures.empty()) return text;
   text += "## Figures\n\n";
   AddFigures(figures, false, text);
   text += "## Sequence by sequence\n\n";
