@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "bench/repeats.h"
+#include "bench/table_cells.h"
 
 namespace msf {
 namespace {
@@ -17,10 +17,6 @@ constexpr char kMarks[] =
     "the lowest of them.";
 
 Cell Published(const std::string& text) { return {text, true}; }
-
-Cell PublishedNumber(double value, int decimals) {
-  return Published(value == 0 ? "" : fmt::format("{:.{}f}", value, decimals));
-}
 
 const PublishedError* Find(const std::vector<PublishedError>& errors, const std::string& sequence,
                            const std::string& system) {
