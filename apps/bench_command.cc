@@ -106,6 +106,7 @@ Plan ResolvePlan(const BenchArguments& arguments, const Suite& suite, const Buil
 void RunOpenTasks(const BenchArguments& arguments, const Plan& plan) {
   const std::vector<Task> open = OpenTasks(arguments.out, plan, arguments.retry_failed);
   std::cerr << fmt::format("bench: {} of {} tasks are open\n", open.size(), plan.tasks.size());
+  ForgetResults(arguments.out, open);
   if (arguments.slurm) {
     Require(RunTasksOnSlurm(arguments.out, open, {arguments.slurm_options, 0}));
   } else {

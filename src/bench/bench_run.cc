@@ -156,6 +156,11 @@ std::vector<Task> OpenTasks(const fs::path& out, const Plan& plan, bool retry_fa
   return open;
 }
 
+void ForgetResults(const fs::path& out, const std::vector<Task>& tasks) {
+  std::error_code ignored;
+  for (const Task& task : tasks) fs::remove(TaskResultFile(out, task), ignored);
+}
+
 void RunTasks(const fs::path& out, const std::vector<Task>& tasks, int jobs, size_t num_all) {
   TaskProgress progress(tasks.size(), num_all);
   std::vector<Task> together, alone;

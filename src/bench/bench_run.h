@@ -37,6 +37,9 @@ void RenderSequences(const std::filesystem::path& out, int jobs, Plan& plan);
 // The tasks without a result that fits; with `retry_failed` also those that were not ok.
 std::vector<Task> OpenTasks(const std::filesystem::path& out, const Plan& plan, bool retry_failed);
 
+// Takes away what earlier runs of these tasks left, so that nothing old can pass for new.
+void ForgetResults(const std::filesystem::path& out, const std::vector<Task>& tasks);
+
 // Runs them on this machine, `jobs` at a time; tasks that have to be alone come last, one by one.
 // `num_all`: tasks of the suite, for the progress on stderr.
 void RunTasks(const std::filesystem::path& out, const std::vector<Task>& tasks, int jobs,

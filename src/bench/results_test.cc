@@ -79,6 +79,9 @@ TEST(Resume, OnlyWhatHasNoFittingResultIsOpen) {
   write(2, "ok", "of another build");
   EXPECT_EQ(OpenTasks(folder / "out", results.plan, false).size(), 8u);
   EXPECT_EQ(OpenTasks(folder / "out", results.plan, true).size(), 9u);
+  ForgetResults(folder / "out", {results.plan.tasks[0]});
+  EXPECT_EQ(OpenTasks(folder / "out", results.plan, false).size(), 9u);
+  write(0, "ok", "");
   const std::vector<TaskResult> collected = CollectResults(folder / "out", results.plan);
   ASSERT_EQ(collected.size(), 10u);
   EXPECT_EQ(collected[1].status, "crashed");

@@ -56,8 +56,8 @@ Status ScoreMasks(const Task& task, const fs::path& folder, TaskResult& result) 
   std::error_code ignored;
   for (const char* name : {"labels.csv", "objects.csv"}) fs::remove(folder / name, ignored);
   if (!score.ok()) return score.status();
-  result.static_kept = score->on_static.KeptShare();
-  result.dynamic_removed = score->Recall();
+  if (score->on_static.Total() > 0) result.static_kept = score->on_static.KeptShare();
+  if (score->on_movers.Total() > 0) result.dynamic_removed = score->Recall();
   return Status::Ok();
 }
 
