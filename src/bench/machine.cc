@@ -6,7 +6,7 @@
 
 #include <fstream>
 
-#include "bench_build_info.h"
+#include "bench/build_info.h"
 
 namespace msf {
 namespace {

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -165,9 +166,9 @@ TEST(Peers, AreNamedAfterSequences) {
   std::string images, truth, kitti;
   for (int i = 0; i < 20; ++i) {
     const std::string t = std::to_string(1000 + 0.1 * i), x = std::to_string(0.01 * i * i);
-    images += t + " rgb/" + t + ".png " + t + " depth/" + t + ".png\n";
-    truth += t + " " + x + " 0 0 0 0 0 1\n";
-    kitti += "1 0 0 " + x + " 0 1 0 0 0 0 1 0\n";
+    images += fmt::format("{0} rgb/{0}.png {0} depth/{0}.png\n", t);
+    truth += fmt::format("{} {} 0 0 0 0 0 1\n", t, x);
+    kitti += fmt::format("1 0 0 {} 0 1 0 0 0 0 1 0\n", x);
   }
   folder.Write("data/associations.txt", images);
   folder.Write("data/groundtruth.txt", truth);

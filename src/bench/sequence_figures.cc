@@ -66,6 +66,7 @@ double DrawStates(SvgCanvas& canvas, double top, const std::vector<RunRecord>& r
     y += kStrip + kStripGap;
   }
   std::vector<LegendEntry> legend;
+  legend.reserve(seen.size());
   for (const auto& [state, color] : seen) legend.push_back({state, {color, 10}});
   DrawLegend(canvas, {kLeft, y}, legend);
   return y + 60;
@@ -145,6 +146,7 @@ Figure CourseFigure(const SuiteSequence& sequence, const std::vector<RunRecord>&
   const std::string title = sequence.name + ": course of the runs";
   canvas.Text({kLeft, 26}, title, {.size = 15, .bold = true});
   std::vector<LegendEntry> legend;
+  legend.reserve(runs.size());
   for (size_t i = 0; i < runs.size(); ++i) legend.push_back({runs[i].variant, {LineColor(i), 2.4}});
   DrawLegend(canvas, {kLeft, 36}, legend);
   const Range time_s = TimeOf(runs);
@@ -156,6 +158,7 @@ Figure CourseFigure(const SuiteSequence& sequence, const std::vector<RunRecord>&
 
 Figure ErrorFigure(const SuiteSequence& sequence, const std::vector<RunRecord>& runs) {
   std::vector<Evaluation> evaluations;
+  evaluations.reserve(runs.size());
   for (const RunRecord& run : runs) evaluations.push_back(run.evaluation);
   return {"errors_" + sequence.name, sequence.name, sequence.name + ": errors over time", "",
           PlotErrors(evaluations)};
