@@ -36,6 +36,7 @@ struct BenchArguments {
   std::string slurm_options;
   std::vector<fs::path> roots;
   fs::path sequence_folder;
+  std::vector<std::string> sequences, variants;
   std::vector<std::string> peers;
   double time_limit_s = 0;
   int max_frames = 0;
@@ -71,6 +72,7 @@ Suite ResolveSuite(const BenchArguments& arguments) {
                                      fmt::join(SuiteNames(), ", ")));
   }
   Suite suite = Require(LoadSuite(arguments.suite));
+  Require(suite.KeepOnly(arguments.sequences, arguments.variants));
   if (arguments.max_frames > 0) suite.max_frames = arguments.max_frames;
   if (arguments.repeats > 0) {
     suite.repeats = arguments.repeats;
@@ -215,8 +217,15 @@ void AddOptions(CLI::App& command, BenchArguments& arguments) {
                   "MSF_SLAM_DATASETS (separated by ':')")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("--sequences", arguments.sequence_folder,
+  command.add_option("--rendered", arguments.sequence_folder,
                      "where simulated sequences are made and kept; default: OUT/sequences");
+  command
+      .add_option("--sequences", arguments.sequences, "only these of the suite, separated by ','")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command.add_option("--variants", arguments.variants, "only these of the suite, separated by ','")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command
       .add_option("--peers", arguments.peers,
                   "NAME=FOLDER with trajectories of another system (TUM, KITTI or EuRoC), named "

@@ -45,8 +45,8 @@ class BenchTest : public ::testing::Test {
   }
   Outcome Bench(const std::string& suite, const std::string& out,
                 const std::string& options = "") const {
-    return RunProgram("bench " + suite + " --out " + Path(out) + " --sequences " +
-                      shared_.string() + " " + options);
+    return RunProgram("bench " + suite + " --out " + Path(out) + " --rendered " + shared_.string() +
+                      " " + options);
   }
   nlohmann::json Results(const std::string& out) const {
     return nlohmann::json::parse(ReadWholeFile(folder_ / (out + "/results.json")));
@@ -60,11 +60,10 @@ constexpr char kOffAndFull[] =
     "  - {name: \"off\", dynamic: \"off\"}\n  - {name: full, dynamic: full, detector: none}\n";
 
 TEST_F(BenchTest, CrashesAndHangsAreReportedAndTheRestCompletes) {
-  const std::string suite = Suite(
-      "s", std::string(kOffAndFull) +
-               "  - {name: crash, program: " + Script("crash", "kill -SEGV $$\n") +
-               "}\n  - {name: hang, time_limit_s: 0.5, program: " + Script("hang", "sleep 1000\n") +
-               "}\n");
+  const std::string suite = Suite("s", std::string(kOffAndFull) + "  - {name: crash, program: " +
+                                           Script("crash", "kill -SEGV $$\n") +
+                                           "}\n  - {name: hang, time_limit_s: 0.5, program: " +
+                                           Script("hang", "exec sleep 1000\n") + "}\n");
   const Outcome outcome = Bench(suite, "out", "--jobs 2");
   ExpectSentence(outcome, "4 of 8 tasks did not succeed");
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("walking/crash/0: crashed: killed by signal 11"),
@@ -87,10 +86,10 @@ TEST_F(BenchTest, CrashesAndHangsAreReportedAndTheRestCompletes) {
 
 // The first task of a variant kills the bench with SIGKILL the first time it is run.
 TEST_F(BenchTest, KilledAndResumedItGivesTheSame) {
-  const std::string killer =
-      Script("killer", "if [ ! -e " + Path("killed") + " ]; then touch " + Path("killed") +
-                           "; kill -KILL $(awk '{ print $4 }' /proc/$PPID/stat); sleep 1000; fi\n" +
-                           "exec " MSF_PROGRAM " \"$@\"\n");
+  const std::string killer = Script(
+      "killer", "if [ ! -e " + Path("killed") + " ]; then touch " + Path("killed") +
+                    "; kill -KILL $(awk '{ print $4 }' /proc/$PPID/stat); exec sleep 1000; fi\n" +
+                    "exec " MSF_PROGRAM " \"$@\"\n");
   const std::string suite = Suite(
       "s", std::string(kOffAndFull) + "  - {name: fatal, dynamic: \"off\", program: " + killer +
                "}\n  - {name: again, dynamic: \"off\"}\n");
@@ -151,6 +150,8 @@ TEST_F(BenchTest, MistakesAreSentences) {
                  "variant 'v': unknown option 'no_such_key'");
   const std::string good = Suite("s", kOffAndFull);
   ExpectSentence(Bench(good, "o", "--root " + Path("absent")), "no such folder of data sets");
+  ExpectSentence(Bench(good, "o", "--variants off,none"), "no variant 'none', only: off, full");
+  ExpectSentence(Bench(good, "o", "--sequences none"), "no sequence 'none'");
   ExpectSentence(Bench(good, "o", "--peers x"), "NAME=FOLDER");
   ExpectSentence(RunProgram("bench " + good + " --out /proc/no"), "cannot be written there");
   const std::string missing =
@@ -226,13 +227,13 @@ TEST_F(BenchTest, SlurmGivesWhatJobsGive) {
   ASSERT_EQ(local.exit_code, 0) << local.output;
   const std::string nothing = folder_.Write("nothing.conf", "").string();
   ExpectSentence(RunShell("SLURM_CONF=" + nothing + " " MSF_PROGRAM " bench " + suite + " --out " +
-                          Path("no") + " --sequences " + shared_.string() + " --slurm"),
+                          Path("no") + " --rendered " + shared_.string() + " --slurm"),
                  "Slurm cannot be asked");
   const SlurmNode node(Path("slurm"));
   ASSERT_EQ(node.start().exit_code, 0) << node.start().output;
   const Outcome array =
       RunShell("SLURM_CONF=" + Path("slurm/slurm.conf") + " " MSF_PROGRAM " bench " + suite +
-               " --out " + Path("array") + " --sequences " + shared_.string() + " --slurm");
+               " --out " + Path("array") + " --rendered " + shared_.string() + " --slurm");
   ASSERT_EQ(array.exit_code, 0) << array.output;
   EXPECT_EQ(Results("array").at("tasks").size(), 20u);
   EXPECT_EQ(ReadWholeFile(folder_ / "array/results.json"),

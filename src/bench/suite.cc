@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <set>
+#include <tuple>
 
 #include "util/data_path.h"
 #include "util/options.h"
@@ -74,11 +75,39 @@ Status CheckVariant(const Suite& suite, const SuiteVariant& variant) {
   return Status::Ok();
 }
 
+// The variants that stand in the paper's columns, where somebody chose them.
+Status CheckColumns(const Suite& suite) {
+  const Suite defaults;
+  for (const auto& [key, name, usual] : {std::tuple("baseline", suite.baseline, defaults.baseline),
+                                         std::tuple("ours", suite.ours, defaults.ours)}) {
+    if (name != usual && suite.FindVariant(name) == nullptr)
+      return Status::Error(fmt::format("{} names '{}', which is no variant here", key, name));
+  }
+  return Status::Ok();
+}
+
 template <typename Entry>
 const Entry* Find(const std::vector<Entry>& entries, const std::string& name) {
   const auto found = std::find_if(entries.begin(), entries.end(),
                                   [&](const Entry& entry) { return entry.name == name; });
   return found == entries.end() ? nullptr : &*found;
+}
+
+template <typename Entry>
+Status Keep(const std::string& what, const std::vector<std::string>& names,
+            std::vector<Entry>& entries) {
+  for (const std::string& name : names) {
+    if (Find(entries, name) != nullptr) continue;
+    std::vector<std::string> known;
+    for (const Entry& entry : entries) known.push_back(entry.name);
+    return Status::Error(
+        fmt::format("the suite has no {} '{}', only: {}", what, name, fmt::join(known, ", ")));
+  }
+  if (names.empty()) return Status::Ok();
+  std::erase_if(entries, [&](const Entry& entry) {
+    return std::find(names.begin(), names.end(), entry.name) == names.end();
+  });
+  return Status::Ok();
 }
 
 StatusOr<fs::path> FindSuite(const std::string& name_or_file) {
@@ -120,7 +149,13 @@ Status Suite::Check() const {
   for (const SuiteSequence& sequence : sequences)
     MSF_RETURN_IF_ERROR(CheckSequence(*this, sequence));
   for (const SuiteVariant& variant : variants) MSF_RETURN_IF_ERROR(CheckVariant(*this, variant));
-  return Status::Ok();
+  return CheckColumns(*this);
+}
+
+Status Suite::KeepOnly(const std::vector<std::string>& sequence_names,
+                       const std::vector<std::string>& variant_names) {
+  MSF_RETURN_IF_ERROR(Keep("sequence", sequence_names, sequences));
+  return Keep("variant", variant_names, variants);
 }
 
 std::string ModeOf(const Suite& suite, const SuiteVariant& variant) {

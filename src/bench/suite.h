@@ -142,6 +142,10 @@ struct Suite {
   // The first thing that makes no sense, as a sentence.
   Status Check() const;
 
+  // Takes out all others; no names: keeps all. An error when there is none of that name.
+  Status KeepOnly(const std::vector<std::string>& sequence_names,
+                  const std::vector<std::string>& variant_names);
+
   const SuiteSequence* FindSequence(const std::string& sequence) const;
   const SuiteVariant* FindVariant(const std::string& variant) const;
 };

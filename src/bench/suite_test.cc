@@ -68,9 +68,20 @@ TEST(Suite, MistakesAreSentences) {
   EXPECT_THAT(
       message("sequences: [{name: s, scenario: x}]\nvariants: [{name: v, sequences: [t]}]\n"),
       HasSubstr("'t' is not in the suite"));
+  EXPECT_THAT(message(std::string(kSmall) + "ours: best\n"), HasSubstr("'best', which is no"));
   EXPECT_THAT(LoadSuite("no_such_suite").message(),
               testing::AllOf(HasSubstr("no suite 'no_such_suite'"), HasSubstr("tum_dynamic")));
   EXPECT_THAT(LoadSuite("no/such.yaml").message(), HasSubstr("there is no such file"));
+}
+
+TEST(Suite, KeepsWhatIsWanted) {
+  Suite suite = TestSuite();
+  ASSERT_TRUE(suite.KeepOnly({}, {"full"}).ok());
+  EXPECT_EQ(suite.variants.size(), 1u);
+  EXPECT_EQ(suite.sequences.size(), 3u);
+  ASSERT_TRUE(suite.KeepOnly({"calm", "walking"}, {}).ok());
+  EXPECT_EQ(suite.sequences.size(), 2u);
+  EXPECT_THAT(suite.KeepOnly({}, {"off"}).message(), HasSubstr("no variant 'off', only: full"));
 }
 
 }  // namespace

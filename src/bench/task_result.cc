@@ -47,7 +47,7 @@ void AddTiming(const Json& report, TaskTiming& timing) {
   timing.wall_time_s = report.at("wall_time_s");
   timing.cpu_time_s = report.at("cpu_time_s");
   timing.peak_memory_mb = report.at("peak_memory_mb");
-  const Json stages = report.at("timing_ms");
+  const Json& stages = report.at("timing_ms");
   if (stages.contains("total")) {
     timing.p50_ms = stages["total"].at("p50");
     timing.p95_ms = stages["total"].at("p95");
