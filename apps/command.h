@@ -33,5 +33,6 @@ void AddVocabularyCommands(CLI::App& app);
 void AddDetectCommand(CLI::App& app);
 void AddDetectorCommands(CLI::App& app);
 void AddRunCommand(CLI::App& app);
+void AddBenchCommand(CLI::App& app);
 
 }  // namespace msf

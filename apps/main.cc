@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   msf::AddRunCommand(app);
   msf::AddEvaluateCommand(app);
   msf::AddSimulateCommand(app);
+  msf::AddBenchCommand(app);
   msf::AddVocabularyCommands(app);
   msf::AddDetectCommand(app);
   msf::AddDetectorCommands(app);

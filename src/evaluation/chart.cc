@@ -114,11 +114,19 @@ void Chart::DrawAxes() {
                {.size = kLabelText, .anchor = "middle", .upwards = true});
 }
 
-void Chart::Curve(std::span<const Eigen::Vector2d> points, const Stroke& stroke) {
+std::vector<Eigen::Vector2d> Chart::ToPixels(std::span<const Eigen::Vector2d> points) const {
   std::vector<Eigen::Vector2d> pixels;
   pixels.reserve(points.size());
   for (const Eigen::Vector2d& p : points) pixels.push_back(ToPixels(p.x(), p.y()));
-  canvas_.ClippedPolyline(pixels, stroke, clip_);
+  return pixels;
+}
+
+void Chart::Curve(std::span<const Eigen::Vector2d> points, const Stroke& stroke) {
+  canvas_.ClippedPolyline(ToPixels(points), stroke, clip_);
+}
+
+void Chart::Area(std::span<const Eigen::Vector2d> points, Color fill, double opacity) {
+  canvas_.FillClippedPolygon(ToPixels(points), fill, opacity, clip_);
 }
 
 void DrawLegend(SvgCanvas& canvas, const Eigen::Vector2d& at,

@@ -46,9 +46,12 @@ class Chart {
 
   // Points in units of the axes; clipped to the area.
   void Curve(std::span<const Eigen::Vector2d> points, const Stroke& stroke);
+  // The area that the points enclose.
+  void Area(std::span<const Eigen::Vector2d> points, Color fill, double opacity);
 
  private:
   void DrawAxes();
+  std::vector<Eigen::Vector2d> ToPixels(std::span<const Eigen::Vector2d> points) const;
 
   SvgCanvas& canvas_;
   const ChartSpec spec_;

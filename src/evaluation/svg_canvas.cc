@@ -78,6 +78,24 @@ void SvgCanvas::FillBox(const Box& box, Color fill) {
       box.left, box.top, box.width, box.height, Hex(fill));
 }
 
+void SvgCanvas::FillClippedPolygon(std::span<const Eigen::Vector2d> points, Color fill,
+                                   double opacity, int clip) {
+  if (points.empty()) return;
+  body_ +=
+      fmt::format("<polygon clip-path=\"url(#clip{})\" fill=\"{}\" fill-opacity=\"{:g}\" points=\"",
+                  clip, Hex(fill), opacity);
+  for (const Eigen::Vector2d& p : points) body_ += fmt::format("{:.1f},{:.1f} ", p.x(), p.y());
+  body_.back() = '"';
+  body_ += "/>\n";
+}
+
+void SvgCanvas::Image(const Box& box, const std::string& address) {
+  body_ += fmt::format(
+      "<image x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" "
+      "preserveAspectRatio=\"none\" href=\"{}\"/>\n",
+      box.left, box.top, box.width, box.height, Escape(address));
+}
+
 void SvgCanvas::FillDisc(const Eigen::Vector2d& centre, double radius, Color fill) {
   body_ += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:g}\" fill=\"{}\"/>\n", centre.x(),
                        centre.y(), radius, Hex(fill));

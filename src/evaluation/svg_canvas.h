@@ -45,6 +45,11 @@ class SvgCanvas {
   void ClippedPolyline(std::span<const Eigen::Vector2d> points, const Stroke& stroke, int clip);
   int DefineClip(const Box& box);
   void FillBox(const Box& box, Color fill);
+  // The area that the points enclose, see-through by `opacity` < 1; clipped like a polyline.
+  void FillClippedPolygon(std::span<const Eigen::Vector2d> points, Color fill, double opacity,
+                          int clip);
+  // A picture, stretched to the box; `address` is usually a "data:" one, so that it is in the file.
+  void Image(const Box& box, const std::string& address);
   void FillDisc(const Eigen::Vector2d& centre, double radius, Color fill);
   // `at` is on the text's base line. Any UTF-8 text; what XML reserves is escaped.
   void Text(const Eigen::Vector2d& at, const std::string& text, const TextStyle& style = {});

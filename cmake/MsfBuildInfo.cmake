@@ -1,0 +1,25 @@
+# Writes the header with what the program was built from; run at every build, it touches the header only when something changed.
+# Arguments: SOURCE, OUTPUT, VERSION, COMPILER, FLAGS.
+find_program(git git)
+set(commit "")
+if(git)
+  execute_process(COMMAND ${git} -C ${SOURCE} rev-parse --short=12 HEAD
+                  OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  execute_process(COMMAND ${git} -C ${SOURCE} diff --quiet HEAD -- src apps cmake models CMakeLists.txt
+                  RESULT_VARIABLE changed OUTPUT_QUIET ERROR_QUIET)
+  if(commit AND changed)
+    string(APPEND commit "+")
+  endif()
+endif()
+if(NOT commit)
+  set(commit "unknown")
+endif()
+set(text "#define MSF_BUILD_VERSION \"${VERSION}\"\n#define MSF_BUILD_COMMIT \"${commit}\"\n")
+string(APPEND text "#define MSF_BUILD_COMPILER \"${COMPILER}\"\n#define MSF_BUILD_FLAGS \"${FLAGS}\"\n")
+set(before "")
+if(EXISTS ${OUTPUT})
+  file(READ ${OUTPUT} before)
+endif()
+if(NOT before STREQUAL text)
+  file(WRITE ${OUTPUT} "${text}")
+endif()
