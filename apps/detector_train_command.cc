@@ -20,6 +20,7 @@ struct TrainArguments {
   std::vector<std::string> data;
   std::string model = "yolov8n";
   std::string init;
+  std::string start;
   std::string out;
   std::vector<std::string> settings;
 };
@@ -76,6 +77,7 @@ void Train(const TrainArguments& arguments) {
   std::cerr << images.size() << " images\n";
   Trainer trainer(model, options, std::move(images), ProgressPrinter());
   if (!arguments.init.empty()) Require(trainer.Initialize(Require(LoadTensors(arguments.init))));
+  if (!arguments.start.empty()) Require(trainer.StartFrom(Require(LoadTensors(arguments.start))));
   Require(trainer.Run(arguments.out));
   if (trainer.records().empty()) return;
   const EpochRecord& last = trainer.records().back();
@@ -97,6 +99,9 @@ void AddDetectorTrainCommand(CLI::App& app) {
   command->add_option(
       "--init", arguments->init,
       "weights to start from (YOLOv8n of 80 COCO classes, or of an earlier training)");
+  command->add_option("--start", arguments->start,
+                      "weights.pt of an earlier training of this model to go on from, instead of "
+                      "distillation; --init still names the teacher");
   command
       ->add_option(
           "--out", arguments->out,

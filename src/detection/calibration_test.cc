@@ -65,8 +65,8 @@ TEST(Calibrate, GivesEveryConvolutionARange) {
     CompileOptions compile{64, 96, NetworkPrecision::kInt8};
     compile.merging = merging;
     const auto compiled = CompiledNetwork::Compile(graph, compile).value();
-    // All but the six heads, the eleven readers of MSFConv's linear outputs and, unless merged, the two
-    // pointwise convolutions of each of the seven blocks.
+    // All but the six heads, the eleven readers of MSFConv's linear outputs and, unless merged, the
+    // two pointwise convolutions of each of the seven blocks.
     const int higher = 6 + 11 + (merging == CompileOptions::Merging::kNever ? 14 : 0);
     EXPECT_EQ(compiled->num_convolutions() - compiled->num_int8_convolutions(), higher);
   }

@@ -43,31 +43,35 @@ BlockVerdict Background::CompareWith(const View& view, const Eigen::Vector3d& p_
       options_.tolerance_m + options_.tolerance_per_m2 * p_past.z() * p_past.z();
   // Two cells around for the poses' errors: agreement needs one of the nearer ones, seeing through
   // needs all.
+  if (Agrees(view, cell, p_past.z(), tolerance_m)) return BlockVerdict::kConfirmed;
   int beyond = 0, valid = 0;
-  bool agrees = false;
-  for (int dr = -2; dr <= 2; ++dr) {
-    for (int dc = -2; dc <= 2; ++dc) {
-      const int r = cell.y + dr, c = cell.x + dc;
-      if (r < 0 || c < 0 || r >= view.depth.rows() || c >= view.depth.cols()) continue;
+  for (int r = std::max(0, cell.y - 2); r <= std::min(view.depth.rows() - 1, cell.y + 2); ++r) {
+    for (int c = std::max(0, cell.x - 2); c <= std::min(view.depth.cols() - 1, cell.x + 2); ++c) {
       const double d = view.depth.metres()(r, c);
       if (d <= 0) continue;
       ++valid;
       beyond += d > p_past.z() + 2 * tolerance_m;
-      const bool near = std::abs(dr) <= 1 && std::abs(dc) <= 1;
-      const bool removed = !view.removed.empty() && view.removed(r, c) != 0;
-      agrees = agrees || (near && !removed && std::abs(d - p_past.z()) <= tolerance_m);
     }
   }
-  if (agrees) return BlockVerdict::kConfirmed;
   constexpr int kEnough = 12;
   return valid >= kEnough && beyond == valid ? BlockVerdict::kIntruder : BlockVerdict::kUnknown;
 }
 
+bool Background::Agrees(const View& view, const cv::Point& cell, double depth_m,
+                        double tolerance_m) {
+  for (int r = std::max(0, cell.y - 1); r <= std::min(view.depth.rows() - 1, cell.y + 1); ++r) {
+    for (int c = std::max(0, cell.x - 1); c <= std::min(view.depth.cols() - 1, cell.x + 1); ++c) {
+      const double d = view.depth.metres()(r, c);
+      const bool removed = !view.removed.empty() && view.removed(r, c) != 0;
+      if (d > 0 && !removed && std::abs(d - depth_m) <= tolerance_m) return true;
+    }
+  }
+  return false;
+}
+
 BlockVerdicts Background::Compare(double time_s, const CoarseDepth& depth, const Rigid3d& T_cw,
                                   bool steady) const {
-  constexpr int kStep = BlockVerdicts::kBlockCells;
-  constexpr int kCell = CoarseDepth::kCellSize;
-  BlockVerdicts verdicts(depth.rows() / kStep, depth.cols() / kStep);
+  BlockVerdicts verdicts(rays_.rows(), rays_.cols());
   const std::vector<const View*> views = Choose(time_s);
   if (views.empty()) return verdicts;
   const Rigid3d T_wc = T_cw.Inverse();
@@ -75,10 +79,8 @@ BlockVerdicts Background::Compare(double time_s, const CoarseDepth& depth, const
   for (const View* view : views) T_past_now.push_back(view->T_cw * T_wc);
   for (int r = 0; r < verdicts.rows(); ++r) {
     for (int c = 0; c < verdicts.cols(); ++c) {
-      const double d = depth.metres()(r * kStep, c * kStep);
-      if (d <= 0) continue;
-      const Eigen::Vector2d px(c * kStep * kCell + kCell / 2.0, r * kStep * kCell + kCell / 2.0);
-      const Eigen::Vector3d p = camera_.Unproject(camera_.Undistort(px), d);
+      const Eigen::Vector3d p = rays_.Point(depth, r, c).cast<double>();
+      if (p.z() <= 0) continue;
       std::array<int, 3> votes{};
       for (size_t k = 0; k < views.size(); ++k) {
         const BlockVerdict verdict = CompareWith(*views[k], T_past_now[k] * p);

@@ -4,7 +4,7 @@
 
 #include <deque>
 
-#include "dynamic/coarse_depth.h"
+#include "dynamic/block_rays.h"
 #include "dynamic/dynamic_options.h"
 #include "geometry/rigid3d.h"
 
@@ -19,7 +19,7 @@ enum class BlockVerdict : uint8_t {
 // Verdicts per block of 2 x 2 cells of CoarseDepth.
 class BlockVerdicts {
  public:
-  static constexpr int kBlockCells = 2;
+  static constexpr int kBlockCells = BlockRays::kBlockCells;
 
   BlockVerdicts() = default;
   BlockVerdicts(int rows, int cols)
@@ -43,7 +43,7 @@ class BlockVerdicts {
 class Background {
  public:
   Background(const BackgroundOptions& options, const Camera& camera)
-      : options_(options), camera_(camera) {}
+      : options_(options), camera_(camera), rays_(camera) {}
 
   // Keeps a view for later comparison. `removed`: cells that belonged to objects (may be empty).
   // `steady`: the camera turned slowly.
@@ -56,6 +56,7 @@ class Background {
   // The world's coordinates have changed: T_old_new takes new ones to old ones.
   void ChangeWorld(const Rigid3d& T_old_new);
   void Forget() { views_.clear(); }
+  const BlockRays& rays() const { return rays_; }
 
  private:
   struct View {
@@ -66,10 +67,13 @@ class Background {
     bool steady = false;
   };
   std::vector<const View*> Choose(double time_s) const;
+  // Whether the view shows the depth in the cell or beside it.
+  static bool Agrees(const View& view, const cv::Point& cell, double depth_m, double tolerance_m);
   BlockVerdict CompareWith(const View& view, const Eigen::Vector3d& p_past) const;
 
   BackgroundOptions options_;
   Camera camera_;
+  BlockRays rays_;
   std::deque<View> views_;  // oldest first
 };
 

@@ -141,6 +141,7 @@ void DynamicFilter::ClassifyByMotion(Work& work, const Rigid3d& T_last_now_predi
   if (work.has_detections) {
     tracks_.TakeDetections(work.detections, work.frame.time_s);
   }
+  ExcludePlanes(work);
   GrowMasks(work);
   if (options_.unknown_movers && result.camera_motion_reliable) {
     FindMovers(work);
@@ -292,23 +293,25 @@ void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
   }
   if (options_.weights) return;
   for (float& probability : result.labels.static_probability)
-    probability = probability < options_.min_static_probability ? 0.0f : 1.0f;
+    probability = probability < static_cast<float>(options_.min_static_probability) ? 0.0f : 1.0f;
 }
 
 // Rather than losing track: those that do not move themselves first, and never those that do.
 void DynamicFilter::ReadmitPoints(const Work& work, DynamicResult& result) const {
   const PointLabels& labels = result.labels;
   const auto used = [&](int i) {
-    return labels.static_probability[i] >= options_.min_static_probability;
+    return labels.static_probability[i] >= static_cast<float>(options_.min_static_probability);
   };
   int missing = options_.min_static_features -
                 static_cast<int>(std::count_if(work.all.begin(), work.all.end(), used));
   if (missing <= 0) return;
+  const float weight =
+      std::max(kReadmittedWeight, static_cast<float>(options_.min_static_probability));
   for (const PointMotion wanted : {PointMotion::kStatic, PointMotion::kUntested}) {
     for (const int i : work.all) {
       if (missing == 0) return;
       if (used(i) || work.motion[i] != wanted || Moves(work.slow_motion[i])) continue;
-      result.labels.Set(i, PointReason::kReadmitted, kReadmittedWeight);
+      result.labels.Set(i, PointReason::kReadmitted, weight);
       --missing;
     }
   }
@@ -331,9 +334,18 @@ void DynamicFilter::Describe(const Work& work, DynamicResult& result) const {
                         static_cast<double>(result.mask.total());
 }
 
+// Cells that cannot tell later what the static world looked like: those of objects, and those that
+// may be because they lie in the box of one and not on a plane.
+cv::Mat1b DynamicFilter::Doubtful(const Work& work, const DynamicResult& result) const {
+  if (work.in_box.empty()) return result.mask;
+  cv::Mat1b doubtful = work.in_box & ~work.on_plane;
+  cv::resize(doubtful, doubtful, result.mask.size(), 0, 0, cv::INTER_NEAREST);
+  return doubtful | result.mask;
+}
+
 void DynamicFilter::Remember(Work& work, const DynamicResult& result) {
   mask_share_ = result.mask_share;
-  last_mask_ = result.mask;
+  last_doubtful_ = Doubtful(work, result);
   tracks_.RememberBoxes(work.frame.id, static_cast<size_t>(options_.history_frames));
   past_.push_back(std::move(work.view));
   if (past_.size() > static_cast<size_t>(options_.history_frames)) past_.pop_front();
@@ -350,29 +362,31 @@ void DynamicFilter::TakePose(const std::optional<Rigid3d>& T_cw, bool same_world
     }
   }
   if (T_cw && !past_.empty())
-    background_.Remember(past_.back().time_s, past_.back().depth, last_mask_, *T_cw, steady_);
+    background_.Remember(past_.back().time_s, past_.back().depth, last_doubtful_, *T_cw, steady_);
 }
 
 double DynamicFilter::FeatureFactor() const {
   return std::min(options_.max_feature_factor, 1 / std::max(0.1, 1 - mask_share_));
 }
 
-FrameFeatures KeepStatic(const FrameFeatures& features, const PointLabels& labels,
-                         double min_static_probability, const Camera& camera) {
-  FrameFeatures kept;
+SplitFeatures SplitByProbability(const FrameFeatures& features, const PointLabels& labels,
+                                 double min_static_probability, const Camera& camera) {
+  SplitFeatures split;
   for (int i = 0; i < features.size(); ++i) {
-    if (labels.static_probability[i] < min_static_probability) continue;
-    kept.image_px.push_back(features.image_px[i]);
-    kept.uv_px.push_back(features.uv_px[i]);
-    kept.depth_m.push_back(features.depth_m[i]);
-    kept.u_right_px.push_back(features.u_right_px[i]);
-    kept.angle_rad.push_back(features.angle_rad[i]);
-    kept.level.push_back(features.level[i]);
-    kept.static_weight.push_back(labels.static_probability[i]);
-    kept.descriptors.push_back(features.descriptors[i]);
+    const bool is_used = labels.static_probability[i] >= static_cast<float>(min_static_probability);
+    FrameFeatures& part = is_used ? split.used : split.removed;
+    part.image_px.push_back(features.image_px[i]);
+    part.uv_px.push_back(features.uv_px[i]);
+    part.depth_m.push_back(features.depth_m[i]);
+    part.u_right_px.push_back(features.u_right_px[i]);
+    part.angle_rad.push_back(features.angle_rad[i]);
+    part.level.push_back(features.level[i]);
+    part.static_weight.push_back(labels.static_probability[i]);
+    part.descriptors.push_back(features.descriptors[i]);
   }
-  kept.BuildGrid(camera);
-  return kept;
+  split.used.BuildGrid(camera);
+  split.removed.BuildGrid(camera);
+  return split;
 }
 
 }  // namespace msf

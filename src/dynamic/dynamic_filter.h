@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dynamic/background.h"
+#include "dynamic/background_planes.h"
 #include "dynamic/camera_motion.h"
 #include "dynamic/object_track.h"
 #include "dynamic/point_labels.h"
@@ -70,6 +71,8 @@ class DynamicFilter {
     const FrameFeatures& features;
     std::vector<int> all;                  // every feature
     BlockVerdicts background;              // against older depth
+    cv::Mat1b in_box;                      // blocks inside boxes of objects that may move
+    cv::Mat1b on_plane;                    // blocks on large flat surfaces
     PastView view;                         // the frame itself, as later frames will need it
     std::vector<FlowPoint> flow;           // of each feature into the last image
     std::vector<PointMotion> motion;       // against the last image
@@ -89,7 +92,9 @@ class DynamicFilter {
   void TestMotions(Work& work) const;
   void TestSlowMotions(Work& work) const;
   void MoveTracks(const Work& work);
+  void ExcludePlanes(Work& work) const;
   void GrowMasks(const Work& work);
+  ObjectMaskOptions MaskOptionsFor(const ObjectTrack& track) const;
   void FindMovers(const Work& work);
   void FindIntruders(const Work& work);
   void GatherEvidence(const Work& work);
@@ -97,6 +102,7 @@ class DynamicFilter {
   void LabelPoints(const Work& work, DynamicResult& result) const;
   void ReadmitPoints(const Work& work, DynamicResult& result) const;
   void Describe(const Work& work, DynamicResult& result) const;
+  cv::Mat1b Doubtful(const Work& work, const DynamicResult& result) const;
   void Remember(Work& work, const DynamicResult& result);
   const PastView* ViewBefore(double time_s) const;
 
@@ -110,16 +116,19 @@ class DynamicFilter {
   Background background_;
   Vector6d last_motion_ = Vector6d::Zero();  // twist from the last frame to the present one
   bool steady_ = false;                      // the camera turns slowly
-  cv::Mat1b last_mask_;
-  std::optional<Rigid3d> T_cw_last_;      // of the last frame, by tracking
-  std::optional<Rigid3d> T_cw_expected_;  // of the present one, by its motion since
-  FrameId last_detections_;               // the frame of the newest detections taken
-  double mask_share_ = 0;                 // of the last frame
+  cv::Mat1b last_doubtful_;                  // cells of the last frame that may be objects
+  std::optional<Rigid3d> T_cw_last_;         // of the last frame, by tracking
+  std::optional<Rigid3d> T_cw_expected_;     // of the present one, by its motion since
+  FrameId last_detections_;                  // the frame of the newest detections taken
+  double mask_share_ = 0;                    // of the last frame
 };
 
-// The features that are static enough to be used, with their static probability as weight, and for
-// each its index in `features`.
-FrameFeatures KeepStatic(const FrameFeatures& features, const PointLabels& labels,
-                         double min_static_probability, const Camera& camera);
+// Features with their static probability as weight, in two parts.
+struct SplitFeatures {
+  FrameFeatures used;     // static enough
+  FrameFeatures removed;  // the others
+};
+SplitFeatures SplitByProbability(const FrameFeatures& features, const PointLabels& labels,
+                                 double min_static_probability, const Camera& camera);
 
 }  // namespace msf

@@ -9,12 +9,37 @@
 namespace msf {
 namespace {
 
+constexpr float kTrustedScore = 0.5f;
+
 ImageBox Moved(const ImageBox& box, const Eigen::Vector2f& by) {
   return {box.x0 + by.x(), box.y0 + by.y(), box.x1 + by.x(), box.y1 + by.y()};
 }
 
 Eigen::Vector2f Centre(const ImageBox& box) {
   return {0.5f * (box.x0 + box.x1), 0.5f * (box.y0 + box.y1)};
+}
+
+// A weak detection may be clutter, and so may motion seen once, which the past must be free to
+// confirm as static.
+bool IsEstablished(const ObjectTrack& track) {
+  switch (track.kind) {
+    case ObjectKind::kKnown:
+      return track.best_score >= kTrustedScore;
+    case ObjectKind::kUnknown:
+      return track.Removes();
+    case ObjectKind::kPotential:
+      break;
+  }
+  return false;
+}
+
+// The box, wider by `margin` of itself on each side, in blocks.
+cv::Rect BlocksAround(const ImageBox& box, float margin) {
+  constexpr auto kBlock_px = static_cast<float>(CoarseDepth::kCellSize * BlockRays::kBlockCells);
+  const float x = margin * box.width(), y = margin * box.height();
+  const cv::Point from(cv::Point2f(box.x0 - x, box.y0 - y) / kBlock_px),
+      to(cv::Point2f(box.x1 + x, box.y1 + y) / kBlock_px);
+  return {from, to + cv::Point(1, 1)};
 }
 
 // Component-wise median.
@@ -109,8 +134,37 @@ void DynamicFilter::MoveTracks(const Work& work) {
   });
 }
 
+// What lies on a large plane that goes on outside is not the object.
+void DynamicFilter::ExcludePlanes(Work& work) const {
+  if (options_.planes.max_planes == 0 || !options_.depth_split) return;
+  constexpr double kMostlyCovered = 0.7;
+  const BlockRays& rays = background_.rays();
+  cv::Mat1b in_box(rays.rows(), rays.cols(), static_cast<uint8_t>(0)), in_mover = in_box.clone();
+  for (const ObjectTrack& track : tracks_.tracks()) {
+    if (!IsEstablished(track)) continue;
+    const auto margin = static_cast<float>(MaskOptionsFor(track).box_margin);
+    const cv::Rect blocks = BlocksAround(track.box, margin);
+    cv::rectangle(in_box, blocks, 255, cv::FILLED);
+    if (track.kind == ObjectKind::kUnknown) cv::rectangle(in_mover, blocks, 255, cv::FILLED);
+  }
+  if (cv::countNonZero(in_box) == 0) return;
+  work.in_box = in_box;
+  // Where boxes cover almost everything there is no outside to go on in; people are not flat.
+  const bool outside_shows = cv::countNonZero(in_box) < kMostlyCovered * in_box.total();
+  work.on_plane =
+      FindPlaneBlocks(work.view.depth, rays, outside_shows ? in_box : in_mover, options_.planes,
+                      seed_ + static_cast<uint64_t>(work.frame.id.value()));
+  if (work.background.rows() == 0) work.background = BlockVerdicts(rays.rows(), rays.cols());
+  for (int r = 0; r < rays.rows(); ++r) {
+    for (int c = 0; c < rays.cols(); ++c) {
+      const bool is_new = work.background.At(r, c) == BlockVerdict::kIntruder;
+      if (work.on_plane(r, c) != 0 && in_box(r, c) != 0 && !is_new)
+        work.background.Set(r, c, BlockVerdict::kConfirmed);
+    }
+  }
+}
+
 void DynamicFilter::GrowMasks(const Work& work) {
-  constexpr float kTrustedScore = 0.5f;
   for (ObjectTrack& track : tracks_.tracks()) {
     if (!options_.depth_split) {
       track.mask = WholeBox(work.view.depth, track.box);
@@ -119,9 +173,17 @@ void DynamicFilter::GrowMasks(const Work& work) {
     std::optional<float> expected_m;
     if (track.mask.depth_m > 0) expected_m = track.mask.depth_m;
     const bool trusted = track.confirmed_s == work.frame.time_s && track.score >= kTrustedScore;
-    track.mask =
-        MaskInBox(work.view.depth, work.background, track.box, trusted, expected_m, options_.mask);
+    track.mask = MaskInBox(work.view.depth, work.background, track.box, trusted, expected_m,
+                           MaskOptionsFor(track));
+    if (track.kind == ObjectKind::kUnknown && !track.mask.empty()) track.box = track.mask.box;
   }
+  tracks_.MergeMovers();
+}
+
+ObjectMaskOptions DynamicFilter::MaskOptionsFor(const ObjectTrack& track) const {
+  ObjectMaskOptions options = options_.mask;
+  if (track.kind == ObjectKind::kUnknown) options.box_margin = options.mover_margin;
+  return options;
 }
 
 void DynamicFilter::FindMovers(const Work& work) {
@@ -130,7 +192,7 @@ void DynamicFilter::FindMovers(const Work& work) {
     if (work.motion[i] == PointMotion::kUntested) continue;
     const bool on_object = std::any_of(
         tracks_.tracks().begin(), tracks_.tracks().end(), [&](const ObjectTrack& track) {
-          return track.confirmations > 1 && track.mask.Covers(work.features.image_px[i]);
+          return track.Removes() && track.mask.Covers(work.features.image_px[i]);
         });
     if (on_object) continue;
     points.push_back({work.features.image_px[i], work.features.depth_m[i], Moves(work.motion[i])});

@@ -290,8 +290,9 @@ TEST(DynamicFilterFull, SuspiciousPointsAreReadmittedWhereTooFewAreLeft) {
   options.min_static_features = num_static + 10;
   const Seen seen = Classify(*MakeFilter(options), frame, &found);
   EXPECT_EQ(seen.labels().Counts()[static_cast<size_t>(PointReason::kReadmitted)], 10);
-  const FrameFeatures kept =
-      KeepStatic(seen.features, seen.labels(), options.min_static_probability, *TestCamera());
+  const FrameFeatures kept = SplitByProbability(seen.features, seen.labels(),
+                                                options.min_static_probability, *TestCamera())
+                                 .used;
   EXPECT_EQ(kept.size(), num_static + 10);
 }
 
@@ -317,7 +318,7 @@ TEST(DynamicFilterFull, AnImageWithoutPointsIsSurvived) {
   }
 }
 
-TEST(KeepStatic, KeepsWhatIsStaticEnoughWithItsWeight) {
+TEST(SplitByProbability, KeepsWhatIsStaticEnoughWithItsWeight) {
   FrameFeatures features;
   for (int i = 0; i < 4; ++i)
     AddFeature({100.0f + 50.0f * static_cast<float>(i), 200}, 2, features);
@@ -328,9 +329,11 @@ TEST(KeepStatic, KeepsWhatIsStaticEnoughWithItsWeight) {
   labels.Set(0, PointReason::kObject, 0.05f);
   labels.Set(2, PointReason::kFlow, 0.29f);
   labels.Set(3, PointReason::kReadmitted, 0.3f);
-  const FrameFeatures kept = KeepStatic(features, labels, 0.3, *TestCamera());
+  const auto [kept, removed] = SplitByProbability(features, labels, 0.3, *TestCamera());
   ASSERT_EQ(kept.size(), 2);
   EXPECT_EQ(kept.static_weight, (std::vector<float>{1, 0.3f}));
+  EXPECT_EQ(removed.static_weight, (std::vector<float>{0.05f, 0.29f}));
+  EXPECT_EQ(removed.image_px[1], features.image_px[2]);
   for (const auto& [now, before] : {std::pair{0, 1}, std::pair{1, 3}}) {
     EXPECT_EQ(kept.image_px[now], features.image_px[before]);
     EXPECT_EQ(kept.uv_px[now], features.uv_px[before]);

@@ -71,11 +71,30 @@ struct BackgroundOptions {
   }
 };
 
+// Large flat surfaces.
+struct PlaneOptions {
+  int max_planes = 4;
+  int hypotheses = 40;
+  double min_share = 0.1;
+  double tolerance_m = 0.012;
+  double tolerance_per_m2 = 0.005;
+
+  template <typename Visitor>
+  void Visit(Visitor& visit) {
+    visit("max_planes", max_planes, "planes looked for where there are objects; 0: none");
+    visit("hypotheses", hypotheses, "samples for each");
+    visit("min_share", min_share, "share of the image that makes a plane");
+    visit("tolerance_m", tolerance_m, "distance of a plane's points from it, m, at depth 0 ...");
+    visit("tolerance_per_m2", tolerance_per_m2, "... and its growth with the square of depth, 1/m");
+  }
+};
+
 struct ObjectMaskOptions {
   double depth_band_m = 0.5;
   double max_step_share = 0.03;
   double max_step_m = 0.02;
   double box_margin = 0.1;
+  double mover_margin = 0.3;
   int grow_px = 4;
   int grow_without_depth_px = 12;
   double min_depth_share = 0.15;
@@ -89,6 +108,8 @@ struct ObjectMaskOptions {
           "neighbouring cells of an object differ in depth by at most this share of it ...");
     visit("max_step_m", max_step_m, "... plus this, m");
     visit("box_margin", box_margin, "an object may reach beyond its box by this share of the box");
+    visit("mover_margin", mover_margin,
+          "the same for a mover of unknown class, whose box is only where motion was seen so far");
     visit("grow_px", grow_px, "the mask is grown by so much, px");
     visit("grow_without_depth_px", grow_without_depth_px,
           "and so far over pixels without depth, px");
@@ -167,6 +188,7 @@ struct DynamicOptions {
   int history_frames = 16;
   MotionTestOptions motion;
   BackgroundOptions background;
+  PlaneOptions planes;
   ObjectMaskOptions mask;
   ObjectTrackOptions tracks;
   FlowOptions flow;
@@ -195,6 +217,7 @@ struct DynamicOptions {
     visit("history_frames", history_frames, "images kept, to place late detections");
     visit("motion", motion, "");
     visit("background", background, "");
+    visit("planes", planes, "");
     visit("mask", mask, "");
     visit("tracks", tracks, "");
     visit("flow", flow, "");

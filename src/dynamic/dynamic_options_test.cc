@@ -36,12 +36,22 @@ TEST(DynamicOptions, WhatMakesNoSenseIsAnError) {
       [](DynamicOptions& o) { o.history_frames = 1; },
       [](DynamicOptions& o) { o.max_feature_factor = 0.5; },
       [](DynamicOptions& o) { o.flow.shrink = 3; },
+      [](DynamicOptions& o) { o.min_static_features = -1; },
+      [](DynamicOptions& o) { o.background.oldest_s = kNan; },
+      [](DynamicOptions& o) { o.planes.max_planes = -1; },
+      [](DynamicOptions& o) { o.tracks.new_share = 1.5; },
   };
   for (size_t i = 0; i < mistakes.size(); ++i) {
     DynamicOptions options;
     mistakes[i](options);
     EXPECT_FALSE(options.Check().ok()) << "mistake " << i;
   }
+}
+
+TEST(DynamicOptions, ANegativeNumberIsNamed) {
+  DynamicOptions options;
+  options.tracks.settle_s = -3;
+  EXPECT_THAT(options.Check().message(), testing::HasSubstr("dynamic.tracks.settle_s"));
 }
 
 }  // namespace

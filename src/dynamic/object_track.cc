@@ -40,8 +40,9 @@ bool ObjectTrack::Removes() const {
     case ObjectKind::kPotential:
       return state == MotionState::kMoving;
     case ObjectKind::kUnknown:
-      return confirmations >= kConfirmationsOfAMover && state != MotionState::kStatic &&
-             evidence.SpeaksForMotion();
+      return confirmations >= kConfirmationsOfAMover &&
+             (state == MotionState::kMoving ||
+              (state == MotionState::kUncertain && evidence.SpeaksForMotion()));
   }
   return false;
 }
@@ -114,6 +115,7 @@ void ObjectTracks::TakeDetections(const std::vector<Detection>& detections, doub
     track->kind = *kind;
     track->class_id = detection.class_id;
     track->score = detection.score;
+    track->best_score = std::max(track->best_score, detection.score);
     track->box = detection.box;
     track->confirmed_s = time_s;
     ++track->confirmations;
@@ -142,6 +144,38 @@ void ObjectTracks::TakeMover(const ImageBox& box, ObjectMask mask, double time_s
   track->state = MotionState::kMoving;
   track->confirmed_s = track->resting_since_s = time_s;
   ++track->confirmations;
+}
+
+void ObjectTracks::MergeMovers() {
+  constexpr float kMostlyInside = 0.7f, kSimilarDepth_m = 0.3f;
+  std::vector<uint8_t> merged(tracks_.size(), 0);
+  for (size_t a = 0; a < tracks_.size(); ++a) {
+    for (size_t b = a + 1; b < tracks_.size(); ++b) {
+      ObjectTrack& one = tracks_[a];
+      const ObjectTrack& other = tracks_[b];
+      if (merged[a] || merged[b] || one.kind != ObjectKind::kUnknown ||
+          other.kind != ObjectKind::kUnknown || one.mask.empty() || other.mask.empty())
+        continue;
+      const bool same_place = Containment(one.mask.box, other.mask.box) > kMostlyInside;
+      if (!same_place || std::abs(one.mask.depth_m - other.mask.depth_m) > kSimilarDepth_m)
+        continue;
+      if (other.mask.area > one.mask.area) {
+        one.mask = other.mask;
+        one.box = other.box;
+      }
+      one.confirmations = std::max(one.confirmations, other.confirmations);
+      one.confirmed_s = std::max(one.confirmed_s, other.confirmed_s);
+      one.resting_since_s = std::max(one.resting_since_s, other.resting_since_s);
+      merged[b] = 1;
+    }
+  }
+  size_t kept = 0;
+  for (size_t t = 0; t < tracks_.size(); ++t) {
+    if (merged[t]) continue;
+    if (kept != t) tracks_[kept] = std::move(tracks_[t]);
+    ++kept;
+  }
+  tracks_.resize(kept);
 }
 
 void ObjectTracks::UpdateState(ObjectTrack& track, double time_s) const {

@@ -31,8 +31,9 @@ struct ObjectTrack {
   int id = 0;
   int class_id = -1;  // of the detector; -1: a mover of unknown class
   ObjectKind kind = ObjectKind::kUnknown;
-  float score = 0;  // of the last detection
-  ImageBox box;     // in the present image, px
+  float score = 0;       // of the last detection
+  float best_score = 0;  // of all
+  ImageBox box;          // in the present image, px
   ObjectMask mask;
   MotionState state = MotionState::kMoving;
   Eigen::Vector2f own_velocity_px_s =
@@ -65,6 +66,8 @@ class ObjectTracks {
   void TakeDetections(const std::vector<Detection>& detections, double time_s);
   // A cluster of moving points outside all masks: confirms the mover there or starts one.
   void TakeMover(const ImageBox& box, ObjectMask mask, double time_s);
+  // Movers of unknown class that cover each other at the same depth are one, the older one.
+  void MergeMovers();
   // The state of motion after `track.evidence` was filled.
   void UpdateStates(double time_s);
   // Forgets tracks that nothing has confirmed for a while; without bridging at once.

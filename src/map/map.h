@@ -73,7 +73,11 @@ class Map {
   void SetPosition(MapPointId id, const Eigen::Vector3d& p_w);
   // Moves a point together with those who see it: p_new = motion * p_old.
   void MovePoint(MapPointId id, const Rigid3d& motion);
-  void SetStaticWeight(MapPointId id, float weight);
+  // One more image says how probable it is that the point stands still: its log-odds follow, by a
+  // tenth of the difference per image, within probabilities of 0.02 to 0.98. So a single wrong
+  // image does little, and about a dozen that agree decide. A point that nothing ever spoke against
+  // keeps 1.
+  void ObserveStaticProbability(MapPointId id, float probability);
   // Connects a point and a feature; either may be taken already, then nothing happens and it
   // returns false.
   bool AddObservation(MapPointId id, KeyFrameId keyframe, int feature);

@@ -1,6 +1,7 @@
 // The half of Map that deals with points.
 #include <algorithm>
 #include <climits>
+#include <cmath>
 
 #include "map/map.h"
 #include "util/check.h"
@@ -10,6 +11,11 @@ namespace {
 
 int Strength(const KeyFrame& keyframe, int feature) {
   return keyframe.features->HasDepth(feature) ? 2 : 1;
+}
+
+float LogOdds(float probability) {
+  const float clamped = std::clamp(probability, 0.02f, 0.98f);
+  return std::log(clamped / (1 - clamped));
 }
 
 }  // namespace
@@ -75,7 +81,14 @@ void Map::SetPosition(MapPointId id, const Eigen::Vector3d& p_w) {
   MutablePoint(id).p_w = p_w;
 }
 
-void Map::SetStaticWeight(MapPointId id, float weight) { MutablePoint(id).static_weight = weight; }
+void Map::ObserveStaticProbability(MapPointId id, float probability) {
+  constexpr float kRate = 0.1f;
+  MapPoint& point = MutablePoint(id);
+  if (probability >= 1 && point.static_weight >= 1) return;
+  const float now = LogOdds(point.static_weight);
+  const float updated = now + kRate * (LogOdds(probability) - now);
+  point.static_weight = 1 / (1 + std::exp(-updated));
+}
 
 bool Map::AddObservation(MapPointId id, KeyFrameId keyframe_id, int feature) {
   MapPoint& point = MutablePoint(id);

@@ -159,6 +159,21 @@ TEST_F(MapTest, AReplacedPointHandsOnWhatItHad) {
   ExpectConsistent();
 }
 
+TEST_F(MapTest, TheStaticProbabilityFollowsWhatImagesSay) {
+  const MapPointId point = map_.AddPoint({0, 0, 2}, map_.AddKeyFrame(MakeKeyFrame(At(0))), 0);
+  const auto probability = [&] { return map_.FindPoint(point)->static_weight; };
+  map_.ObserveStaticProbability(point, 0.05f);
+  EXPECT_LT(probability(), 0.75f);
+  EXPECT_GT(probability(), 0.3f) << "one image does not decide";
+  for (int i = 0; i < 20; ++i) map_.ObserveStaticProbability(point, 0.05f);
+  EXPECT_LT(probability(), 0.3f);
+  EXPECT_GT(probability(), 0.05f);
+  for (int i = 0; i < 100; ++i) map_.ObserveStaticProbability(point, 1);
+  EXPECT_NEAR(probability(), 0.98, 0.01);
+  for (int i = 0; i < 100; ++i) map_.ObserveStaticProbability(point, 0);
+  EXPECT_NEAR(probability(), 0.02, 0.01) << "clamped: it can come back";
+}
+
 TEST_F(MapTest, PointsSeenByKeyFramesAreListedOnce) {
   const KeyFrameId a = Add(0);
   const std::vector<MapPointId> points = AddPoints(a, 5);

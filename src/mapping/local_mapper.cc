@@ -94,6 +94,7 @@ bool LocalMapper::Register(KeyFrameId id) {
   }
   map->UpdateConnections(id);
   recent_points_.Cull(options_, id, *map);
+  CullMovingPoints(options_, id, *map);
   return true;
 }
 

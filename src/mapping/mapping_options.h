@@ -11,6 +11,7 @@ namespace msf {
 struct MappingOptions {
   double min_found_ratio = 0.25;
   int max_weak_strength = 3;
+  double min_static_probability = 0.3;
   int num_neighbours = 10;
   double max_parallax_cosine = 0.9998;
   double min_baselines = 1.0;
@@ -28,6 +29,8 @@ struct MappingOptions {
     visit("max_weak_strength", max_weak_strength,
           "young points go that after two keyframes have no more observations (one with depth "
           "counts twice)");
+    visit("min_static_probability", min_static_probability,
+          "features and points that are less likely to stand still do not stay in the map");
     visit("num_neighbours", num_neighbours,
           "covisible keyframes that a new one is triangulated and fused with");
     visit("max_parallax_cosine", max_parallax_cosine, "rays closer to parallel do not triangulate");

@@ -9,15 +9,12 @@
 namespace msf {
 namespace {
 
-// A point without depth is new information only where the static world is certain enough.
-constexpr float kMinStaticWeight = 0.3f;
-
 // Features without a map point, and likely static.
-std::vector<uint8_t> FreeFeatures(const KeyFrame& keyframe) {
+std::vector<uint8_t> FreeFeatures(const KeyFrame& keyframe, double min_static_probability) {
   std::vector<uint8_t> free(keyframe.points.size());
   for (size_t i = 0; i < free.size(); ++i) {
-    free[i] =
-        !keyframe.points[i].valid() && keyframe.features->static_weight[i] >= kMinStaticWeight;
+    free[i] = !keyframe.points[i].valid() &&
+              keyframe.features->static_weight[i] >= min_static_probability;
   }
   return free;
 }
@@ -86,8 +83,9 @@ std::vector<NewPoint> TriangulateWithNeighbour(const MappingOptions& options, co
   const double distance_m = (keyframe->CentreInWorld() - neighbour->CentreInWorld()).norm();
   if (distance_m < options.min_baselines * camera.baseline_m()) return {};
 
-  const std::vector<uint8_t> free = FreeFeatures(*keyframe),
-                             neighbour_free = FreeFeatures(*neighbour);
+  const std::vector<uint8_t> free = FreeFeatures(*keyframe, options.min_static_probability),
+                             neighbour_free =
+                                 FreeFeatures(*neighbour, options.min_static_probability);
   const auto pairs =
       MatchByEpipolarLine({*keyframe->features, *keyframe->words, free},
                           {*neighbour->features, *neighbour->words, neighbour_free},

@@ -18,4 +18,16 @@ void RecentPoints::Cull(const MappingOptions& options, KeyFrameId newest, Map& m
   points_ = std::move(still_young);
 }
 
+int CullMovingPoints(const MappingOptions& options, KeyFrameId keyframe, Map& map) {
+  std::vector<KeyFrameId> views = map.covisibility().Best(keyframe, options.num_neighbours);
+  views.push_back(keyframe);
+  int culled = 0;
+  for (const MapPointId id : map.PointsSeenBy(views)) {
+    if (map.FindPoint(id)->static_weight >= options.min_static_probability) continue;
+    map.RemovePoint(id);
+    ++culled;
+  }
+  return culled;
+}
+
 }  // namespace msf

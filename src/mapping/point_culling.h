@@ -19,4 +19,9 @@ class RecentPoints {
   std::vector<MapPointId> points_;
 };
 
+// Removes the points in view of `keyframe` and its best `options.num_neighbours` neighbours that do
+// not stand still: their static probability has fallen below `options.min_static_probability`.
+// Returns how many.
+int CullMovingPoints(const MappingOptions& options, KeyFrameId keyframe, Map& map);
+
 }  // namespace msf

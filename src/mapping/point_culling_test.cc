@@ -61,5 +61,17 @@ TEST_F(PointCullingTest, PointsThatWentMeanwhileAreForgotten) {
   EXPECT_EQ(map_.NumPoints(map_.active_map()), 0);
 }
 
+TEST_F(PointCullingTest, PointsThatTurnOutToMoveGo) {
+  const KeyFrameId first = Add(), second = Add();
+  const MapPointId moving = AddYoungPoint(first, 0), still = AddYoungPoint(first, 1);
+  for (const MapPointId id : {moving, still}) map_.AddObservation(id, second, id == moving ? 0 : 1);
+  EXPECT_EQ(CullMovingPoints(options_, second, map_), 0);
+  for (int i = 0; i < 15; ++i) map_.ObserveStaticProbability(moving, 0.05f);
+  map_.ObserveStaticProbability(still, 0.05f);
+  EXPECT_EQ(CullMovingPoints(options_, second, map_), 1);
+  EXPECT_EQ(map_.FindPoint(moving), nullptr);
+  EXPECT_NE(map_.FindPoint(still), nullptr);
+}
+
 }  // namespace
 }  // namespace msf

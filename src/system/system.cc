@@ -57,8 +57,8 @@ class System::Impl {
  private:
   void OfferToDetector(const RgbdFramePtr& frame, StageTimings& timings_ms);
   FrameFeatures Extract(const RgbdFrame& frame, StageTimings& timings_ms);
-  FrameFeatures DropDynamicPoints(const RgbdFramePtr& frame, FrameFeatures features,
-                                  StageTimings& timings_ms);
+  SplitFeatures SplitPoints(const RgbdFramePtr& frame, FrameFeatures features,
+                            StageTimings& timings_ms);
   void TellFilter(const TrackingResult& result);
   MappingLoad Load() const;
   void HandOn(KeyFrameId id);
@@ -130,13 +130,13 @@ StatusOr<TrackingResult> System::Impl::Track(const RgbdFramePtr& frame) {
 
   StageTimings timings_ms;
   if (detection_source_) OfferToDetector(frame, timings_ms);
-  FrameFeatures all = Extract(*frame, timings_ms);
-  if (filter_) all = DropDynamicPoints(frame, std::move(all), timings_ms);
-  auto features = std::make_shared<const FrameFeatures>(std::move(all));
+  SplitFeatures features = SplitPoints(frame, Extract(*frame, timings_ms), timings_ms);
   TrackingResult result;
   {
     const StageTimer timer(timings_ms, "tracking");
-    result = tracker_.Track(frame, std::move(features), Load());
+    result =
+        tracker_.Track(frame, std::make_shared<const FrameFeatures>(std::move(features.used)),
+                       std::make_shared<const FrameFeatures>(std::move(features.removed)), Load());
   }
   for (const auto& [stage, ms] : result.timings_ms) timings_ms["tracking." + stage] = ms;
   timings_ms["total"] = 0;
@@ -166,8 +166,9 @@ FrameFeatures System::Impl::Extract(const RgbdFrame& frame, StageTimings& timing
   return extractor_.Extract(frame, num_features, T_depth_color);
 }
 
-FrameFeatures System::Impl::DropDynamicPoints(const RgbdFramePtr& frame, FrameFeatures features,
-                                              StageTimings& timings_ms) {
+SplitFeatures System::Impl::SplitPoints(const RgbdFramePtr& frame, FrameFeatures features,
+                                        StageTimings& timings_ms) {
+  if (!filter_) return {.used = std::move(features), .removed = {}};
   const StageTimer timer(timings_ms, "dynamic");
   const std::shared_ptr<const Detections> detections =
       detection_source_ ? detection_source_->Newest(frame->id) : nullptr;
@@ -175,7 +176,8 @@ FrameFeatures System::Impl::DropDynamicPoints(const RgbdFramePtr& frame, FrameFe
   const Rigid3d T_last_now = tracker_.PredictMotion(since_last_s).Inverse();
   const DynamicResult result = filter_->Classify(*frame, features, T_last_now, detections.get());
   for (const auto& observer : observers_) observer->OnDynamics(*frame, features, result);
-  return KeepStatic(features, result.labels, options_.dynamic.min_static_probability, *camera_);
+  return SplitByProbability(features, result.labels, options_.dynamic.min_static_probability,
+                            *camera_);
 }
 
 void System::Impl::TellFilter(const TrackingResult& result) {

@@ -50,7 +50,8 @@ TEST(FramePrefetcher, HandsOutAllFramesAndThenNothing) {
     const std::optional<StatusOr<RgbdFramePtr>> frame = prefetcher.Next();
     ASSERT_TRUE(frame.has_value());
     EXPECT_EQ(frame->ok(), i != 2);
-    if (frame->ok()) EXPECT_EQ((**frame)->id, FrameId(i));
+    if (!frame->ok()) continue;
+    EXPECT_EQ((**frame)->id, FrameId(i));
   }
   EXPECT_FALSE(prefetcher.Next().has_value());
 }

@@ -14,11 +14,12 @@ namespace msf {
 struct Frame {
   RgbdFramePtr image;
   std::shared_ptr<const FrameFeatures> features;
-  std::shared_ptr<const BagOfWords> words;  // null until somebody needs them
+  std::shared_ptr<const FrameFeatures> removed;  // what seems to move; only to judge the map by
+  std::shared_ptr<const BagOfWords> words;       // null until somebody needs them
   Rigid3d T_cw;
   std::vector<MapPointId> points;  // per feature: the map point it shows; invalid = none
   KeyFrameId reference;            // the keyframe that shares most points
-  Rigid3d T_c_reference;           // pose relative to it, which stays true when the map is corrected
+  Rigid3d T_c_reference;  // pose relative to it, which stays true when the map is corrected
 
   int NumPoints() const {
     int count = 0;

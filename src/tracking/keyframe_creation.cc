@@ -21,7 +21,8 @@ std::vector<int> ByDepth(const FrameFeatures& features) {
   for (int i = 0; i < features.size(); ++i) {
     if (features.HasDepth(i)) order.push_back(i);
   }
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return features.depth_m[a] < features.depth_m[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return features.depth_m[a] < features.depth_m[b]; });
   return order;
 }
 
@@ -50,7 +51,8 @@ KeyFrameId InsertKeyFrame(const TrackingContext& context, Frame& frame, Map& map
   for (const int i : ByDepth(features)) {
     if (features.depth_m[i] > context.CloseDepth() && handled >= kMinNewPoints) break;
     ++handled;
-    if (frame.points[i].valid() || features.static_weight[i] < context.options.min_static_weight) continue;
+    if (frame.points[i].valid() || features.static_weight[i] < context.options.min_static_weight)
+      continue;
     const Eigen::Vector3d p_w = T_wc * features.PointInCamera(i, context.camera);
     frame.points[i] = map.AddPoint(p_w, id, i);
   }
@@ -58,14 +60,16 @@ KeyFrameId InsertKeyFrame(const TrackingContext& context, Frame& frame, Map& map
   return id;
 }
 
-KeyFrameEvidence GatherEvidence(const TrackingContext& context, const Map& map, const Frame& frame) {
+KeyFrameEvidence GatherEvidence(const TrackingContext& context, const Map& map,
+                                const Frame& frame) {
   KeyFrameEvidence evidence;
   evidence.inliers = frame.NumPoints();
   // Early on no point can have been seen by two keyframes.
   const int min_strength = map.NumKeyFrames(map.active_map()) <= 2 ? 2 : 3;
   if (const KeyFrame* reference = map.FindKeyFrame(frame.reference)) {
     for (const MapPointId id : reference->points) {
-      evidence.reference_points += id.valid() && map.FindPoint(id)->observation_strength >= min_strength;
+      evidence.reference_points +=
+          id.valid() && map.FindPoint(id)->observation_strength >= min_strength;
     }
   }
   const FrameFeatures& features = *frame.features;

@@ -13,13 +13,14 @@ struct MappingLoad {
 
 // What the decision is based on.
 struct KeyFrameEvidence {
-  double since_last_s = 0;    // time since the last keyframe
-  int inliers = 0;            // tracked map points
-  int reference_points = 0;   // well-observed points of the reference keyframe
-  int tracked_close = 0;      // close features with a tracked point
-  int untracked_close = 0;    // close features that the map does not have
+  double since_last_s = 0;   // time since the last keyframe
+  int inliers = 0;           // tracked map points
+  int reference_points = 0;  // well-observed points of the reference keyframe
+  int tracked_close = 0;     // close features with a tracked point
+  int untracked_close = 0;   // close features that the map does not have
 };
 
-bool WantsKeyFrame(const KeyFrameEvidence& evidence, const MappingLoad& load, const KeyFramePolicyOptions& options);
+bool WantsKeyFrame(const KeyFrameEvidence& evidence, const MappingLoad& load,
+                   const KeyFramePolicyOptions& options);
 
 }  // namespace msf

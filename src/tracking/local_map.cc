@@ -18,8 +18,8 @@ void LocalMap::Update(const Map& map, const Frame& frame, int max_keyframes, int
   CopyPoints(map);
 }
 
-std::vector<KeyFrameId> LocalMap::SelectKeyFrames(const Map& map, const Frame& frame, int max_keyframes,
-                                                  int max_neighbours) {
+std::vector<KeyFrameId> LocalMap::SelectKeyFrames(const Map& map, const Frame& frame,
+                                                  int max_keyframes, int max_neighbours) {
   std::map<KeyFrameId, int> votes;
   for (const MapPointId id : frame.points) {
     const MapPoint* point = map.FindPoint(id);
@@ -27,7 +27,8 @@ std::vector<KeyFrameId> LocalMap::SelectKeyFrames(const Map& map, const Frame& f
     for (const Observation& observation : point->observations) ++votes[observation.keyframe];
   }
   std::vector<std::pair<KeyFrameId, int>> ranked(votes.begin(), votes.end());
-  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
   best_keyframe_ = ranked.empty() ? KeyFrameId() : ranked.front().first;
 
   std::set<KeyFrameId> selected;

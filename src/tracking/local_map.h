@@ -11,8 +11,9 @@ namespace msf {
 
 class LocalMap {
  public:
-  // Keyframes that share points with the frame (at most `max_keyframes`), their best `max_neighbours`, their parents and
-  // children, and a copy of all their points. The copy is reused as long as neither the keyframes nor the map change.
+  // Keyframes that share points with the frame (at most `max_keyframes`), their best
+  // `max_neighbours`, their parents and children, and a copy of all their points. The copy is
+  // reused as long as neither the keyframes nor the map change.
   void Update(const Map& map, const Frame& frame, int max_keyframes, int max_neighbours);
 
   // Ascending by id.
@@ -25,7 +26,8 @@ class LocalMap {
   void Clear();
 
  private:
-  std::vector<KeyFrameId> SelectKeyFrames(const Map& map, const Frame& frame, int max_keyframes, int max_neighbours);
+  std::vector<KeyFrameId> SelectKeyFrames(const Map& map, const Frame& frame, int max_keyframes,
+                                          int max_neighbours);
   void CopyPoints(const Map& map);
 
   std::vector<KeyFrameId> keyframes_;

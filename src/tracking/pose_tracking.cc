@@ -12,7 +12,8 @@ double MatchWeight(const FrameFeatures& features, int feature, double point_weig
   return std::min<double>(features.static_weight[feature], point_weight);
 }
 
-// The levels at which a point of the last frame can reappear: moving forward makes it larger, backward smaller.
+// The levels at which a point of the last frame can reappear: moving forward makes it larger,
+// backward smaller.
 std::pair<int, int> LevelRange(int level, double forward_m, const TrackingContext& context) {
   const int top = context.levels.size() - 1;
   if (forward_m > context.camera.baseline_m()) return {level, top};
@@ -38,8 +39,10 @@ LastFrameQueries ProjectLastFrame(const TrackingContext& context, const Map& map
     ProjectionQuery query;
     query.uv_px = context.camera.Project(p_c);
     query.u_right_px = query.uv_px.x() - context.camera.bf / p_c.z();
-    query.radius_px = context.options.motion_radius_px * context.levels.scale(last.features->level[i]);
-    std::tie(query.min_level, query.max_level) = LevelRange(last.features->level[i], forward_m, context);
+    query.radius_px =
+        context.options.motion_radius_px * context.levels.scale(last.features->level[i]);
+    std::tie(query.min_level, query.max_level) =
+        LevelRange(last.features->level[i], forward_m, context);
     query.descriptor = point->descriptor;
     result.queries.push_back(query);
     result.points.push_back(point);
@@ -54,12 +57,14 @@ PointMatch MakePointMatch(const MapPoint& point, const FrameFeatures& features, 
   return {feature, point.id, point.p_w, MatchWeight(features, feature, point.static_weight)};
 }
 
-std::vector<PointMatch> MatchLastFrame(const TrackingContext& context, const Map& map, const Frame& last,
-                                       const FrameFeatures& features, const Rigid3d& T_cw_predicted) {
+std::vector<PointMatch> MatchLastFrame(const TrackingContext& context, const Map& map,
+                                       const Frame& last, const FrameFeatures& features,
+                                       const Rigid3d& T_cw_predicted) {
   LastFrameQueries search = ProjectLastFrame(context, map, last, T_cw_predicted);
   std::vector<std::pair<int, int>> pairs;  // (feature of last, feature now)
   std::vector<int> query_of(last.features->size(), -1);
-  for (size_t q = 0; q < search.queries.size(); ++q) query_of[search.last_features[q]] = static_cast<int>(q);
+  for (size_t q = 0; q < search.queries.size(); ++q)
+    query_of[search.last_features[q]] = static_cast<int>(q);
   for (int attempt = 0; attempt < 2; ++attempt) {
     const std::vector<int> found = MatchByProjection(features, search.queries, {});
     pairs.clear();
@@ -77,20 +82,24 @@ std::vector<PointMatch> MatchLastFrame(const TrackingContext& context, const Map
   return matches;
 }
 
-std::vector<PointMatch> MatchKeyFrame(const Map& map, const KeyFrame& keyframe, const BagOfWords& keyframe_words,
-                                      const FrameFeatures& features, const BagOfWords& words, double ratio) {
+std::vector<PointMatch> MatchKeyFrame(const Map& map, const KeyFrame& keyframe,
+                                      const BagOfWords& keyframe_words,
+                                      const FrameFeatures& features, const BagOfWords& words,
+                                      double ratio) {
   std::vector<uint8_t> has_point(keyframe.points.size());
   std::transform(keyframe.points.begin(), keyframe.points.end(), has_point.begin(),
                  [](MapPointId id) { return id.valid(); });
   const WordMatchOptions options{.ratio = ratio};
   std::vector<PointMatch> matches;
-  for (const auto& [i, j] : MatchByWords({*keyframe.features, keyframe_words, has_point}, {features, words, {}}, options)) {
+  for (const auto& [i, j] : MatchByWords({*keyframe.features, keyframe_words, has_point},
+                                         {features, words, {}}, options)) {
     matches.push_back(MakePointMatch(*map.FindPoint(keyframe.points[i]), features, j));
   }
   return matches;
 }
 
-LocalMatches MatchLocalPoints(const TrackingContext& context, const std::vector<PointSnapshot>& points,
+LocalMatches MatchLocalPoints(const TrackingContext& context,
+                              const std::vector<PointSnapshot>& points,
                               const FrameFeatures& features, const Rigid3d& T_cw,
                               const std::vector<PointMatch>& matched, double radius_factor) {
   std::vector<uint8_t> taken(features.size(), 0);
@@ -111,34 +120,39 @@ LocalMatches MatchLocalPoints(const TrackingContext& context, const std::vector<
     const std::optional<ProjectedPoint> projected = project(point);
     if (!projected) continue;
     const double base_px = projected->view_cosine > 0.998 ? 2.5 : 4.0;
-    queries.push_back({.uv_px = projected->uv_px,
-                       .u_right_px = projected->u_right_px,
-                       .radius_px = base_px * radius_factor * context.levels.scale(projected->level),
-                       .min_level = std::max(0, projected->level - 1),
-                       .max_level = projected->level,
-                       .descriptor = point.descriptor});
+    queries.push_back(
+        {.uv_px = projected->uv_px,
+         .u_right_px = projected->u_right_px,
+         .radius_px = base_px * radius_factor * context.levels.scale(projected->level),
+         .min_level = std::max(0, projected->level - 1),
+         .max_level = projected->level,
+         .descriptor = point.descriptor});
     searched.push_back(&point);
     result.expected.push_back(point.id);
   }
-  const std::vector<int> found = MatchByProjection(features, queries, {.ratio = context.options.local_match_ratio}, taken);
+  const std::vector<int> found =
+      MatchByProjection(features, queries, {.ratio = context.options.local_match_ratio}, taken);
   for (size_t q = 0; q < found.size(); ++q) {
     if (found[q] < 0) continue;
     const PointSnapshot& point = *searched[q];
-    result.matches.push_back({found[q], point.id, point.p_w, MatchWeight(features, found[q], point.static_weight)});
+    result.matches.push_back(
+        {found[q], point.id, point.p_w, MatchWeight(features, found[q], point.static_weight)});
   }
   return result;
 }
 
-bool OptimizeFramePose(const TrackingContext& context, const FrameFeatures& features, int min_inliers,
-                       std::vector<PointMatch>& matches, Rigid3d& T_cw) {
+bool OptimizeFramePose(const TrackingContext& context, const FrameFeatures& features,
+                       int min_inliers, std::vector<PointMatch>& matches, Rigid3d& T_cw) {
   std::vector<PoseObservation> observations;
   observations.reserve(matches.size());
   for (const PointMatch& match : matches) {
-    PoseObservation observation{ObserveFeature(features, match.feature, context.levels, context.noise, match.weight)};
+    PoseObservation observation{
+        ObserveFeature(features, match.feature, context.levels, context.noise, match.weight)};
     observation.p_w = match.p_w;
     observations.push_back(observation);
   }
-  const PoseEstimate estimate = OptimizePose(context.camera, T_cw, observations, context.options.pose);
+  const PoseEstimate estimate =
+      OptimizePose(context.camera, T_cw, observations, context.options.pose);
   size_t kept = 0;
   for (size_t i = 0; i < matches.size(); ++i) {
     if (estimate.inlier[i]) matches[kept++] = matches[i];

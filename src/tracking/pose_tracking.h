@@ -30,13 +30,18 @@ struct PointMatch {
 
 PointMatch MakePointMatch(const MapPoint& point, const FrameFeatures& features, int feature);
 
-// The points of the last frame, searched where `T_cw_predicted` puts them (twice as wide when too few are found).
-std::vector<PointMatch> MatchLastFrame(const TrackingContext& context, const Map& map, const Frame& last,
-                                       const FrameFeatures& features, const Rigid3d& T_cw_predicted);
+// The points of the last frame, searched where `T_cw_predicted` puts them (twice as wide when too
+// few are found).
+std::vector<PointMatch> MatchLastFrame(const TrackingContext& context, const Map& map,
+                                       const Frame& last, const FrameFeatures& features,
+                                       const Rigid3d& T_cw_predicted);
 
-// The points of a keyframe, matched by visual words; `ratio` bounds best against second best descriptor.
-std::vector<PointMatch> MatchKeyFrame(const Map& map, const KeyFrame& keyframe, const BagOfWords& keyframe_words,
-                                      const FrameFeatures& features, const BagOfWords& words, double ratio);
+// The points of a keyframe, matched by visual words; `ratio` bounds best against second best
+// descriptor.
+std::vector<PointMatch> MatchKeyFrame(const Map& map, const KeyFrame& keyframe,
+                                      const BagOfWords& keyframe_words,
+                                      const FrameFeatures& features, const BagOfWords& words,
+                                      double ratio);
 
 struct LocalMatches {
   std::vector<PointMatch> matches;   // new ones only
@@ -44,13 +49,14 @@ struct LocalMatches {
 };
 
 // The local points that should be visible from `T_cw`, apart from those matched already.
-LocalMatches MatchLocalPoints(const TrackingContext& context, const std::vector<PointSnapshot>& points,
+LocalMatches MatchLocalPoints(const TrackingContext& context,
+                              const std::vector<PointSnapshot>& points,
                               const FrameFeatures& features, const Rigid3d& T_cw,
                               const std::vector<PointMatch>& matched, double radius_factor);
 
-// Optimises the pose on the matches, starting at `T_cw`, and drops the matches that disagree. False (nothing changed but the
-// matches that disagree are gone) when fewer than `min_inliers` remain.
-bool OptimizeFramePose(const TrackingContext& context, const FrameFeatures& features, int min_inliers,
-                       std::vector<PointMatch>& matches, Rigid3d& T_cw);
+// Optimises the pose on the matches, starting at `T_cw`, and drops the matches that disagree. False
+// (nothing changed but the matches that disagree are gone) when fewer than `min_inliers` remain.
+bool OptimizeFramePose(const TrackingContext& context, const FrameFeatures& features,
+                       int min_inliers, std::vector<PointMatch>& matches, Rigid3d& T_cw);
 
 }  // namespace msf

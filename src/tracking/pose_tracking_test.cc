@@ -96,8 +96,10 @@ TEST_F(PoseTrackingTest, TooFewInliersLeaveThePoseAsItWas) {
 
 TEST_F(PoseTrackingTest, AMatchWeighsAsMuchAsTheLessCertainOfPointAndFeature) {
   const MapPointId id = Match().front().point;
-  at_.map.SetStaticWeight(id, 0.25f);
-  EXPECT_DOUBLE_EQ(MakePointMatch(*at_.map.FindPoint(id), *at_.view.features, 0).weight, 0.25);
+  at_.map.ObserveStaticProbability(id, 0.25f);
+  const MapPoint& point = *at_.map.FindPoint(id);
+  EXPECT_LT(point.static_weight, 1);
+  EXPECT_DOUBLE_EQ(MakePointMatch(point, *at_.view.features, 0).weight, point.static_weight);
 }
 
 }  // namespace

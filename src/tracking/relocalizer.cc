@@ -9,8 +9,10 @@ namespace msf {
 namespace {
 
 // The matches that agree with one pose, and that pose.
-std::optional<Rigid3d> FindConsensus(const TrackingContext& context, const RelocalizationOptions& options,
-                                     const FrameFeatures& features, uint64_t seed, std::vector<PointMatch>& matches) {
+std::optional<Rigid3d> FindConsensus(const TrackingContext& context,
+                                     const RelocalizationOptions& options,
+                                     const FrameFeatures& features, uint64_t seed,
+                                     std::vector<PointMatch>& matches) {
   std::vector<PnpMatch> pnp_matches;
   for (const PointMatch& match : matches) {
     pnp_matches.push_back({match.p_w, features.uv_px[match.feature].cast<double>(),
@@ -20,7 +22,8 @@ std::optional<Rigid3d> FindConsensus(const TrackingContext& context, const Reloc
                              .max_iterations = options.ransac_iterations,
                              .min_inliers = options.ransac_min_inliers,
                              .seed = seed};
-  const std::optional<PnpEstimate> estimate = EstimatePose(context.camera, pnp_matches, {.ransac = ransac});
+  const std::optional<PnpEstimate> estimate =
+      EstimatePose(context.camera, pnp_matches, {.ransac = ransac});
   if (!estimate) return std::nullopt;
   size_t kept = 0;
   for (size_t i = 0; i < matches.size(); ++i) {
@@ -30,9 +33,11 @@ std::optional<Rigid3d> FindConsensus(const TrackingContext& context, const Reloc
   return estimate->T_cw;
 }
 
-// Looks for the candidate's other points where the pose puts them, and optimises with all; false when too few agree.
-bool GrowMatches(const TrackingContext& context, const Map& map, const KeyFrame& candidate, double radius_px,
-                 int max_distance, const FrameFeatures& features, std::vector<PointMatch>& matches, Rigid3d& T_cw) {
+// Looks for the candidate's other points where the pose puts them, and optimises with all; false
+// when too few agree.
+bool GrowMatches(const TrackingContext& context, const Map& map, const KeyFrame& candidate,
+                 double radius_px, int max_distance, const FrameFeatures& features,
+                 std::vector<PointMatch>& matches, Rigid3d& T_cw) {
   std::vector<uint8_t> taken(features.size(), 0);
   std::vector<MapPointId> matched;
   for (const PointMatch& match : matches) {
@@ -55,46 +60,58 @@ bool GrowMatches(const TrackingContext& context, const Map& map, const KeyFrame&
                        .descriptor = point.descriptor});
     points.push_back(&point);
   }
-  const std::vector<int> found = MatchByProjection(features, queries, {.max_distance = max_distance}, taken);
+  const std::vector<int> found =
+      MatchByProjection(features, queries, {.max_distance = max_distance}, taken);
   for (size_t q = 0; q < found.size(); ++q) {
     if (found[q] >= 0) matches.push_back(MakePointMatch(*points[q], features, found[q]));
   }
   return OptimizeFramePose(context, features, context.options.min_pose_inliers, matches, T_cw);
 }
 
-std::optional<Relocalization> TryCandidate(const TrackingContext& context, const RelocalizationOptions& options,
-                                           const Map& map, const KeyFrame& candidate, const FrameFeatures& features,
+std::optional<Relocalization> TryCandidate(const TrackingContext& context,
+                                           const RelocalizationOptions& options, const Map& map,
+                                           const KeyFrame& candidate, const FrameFeatures& features,
                                            const BagOfWords& words, uint64_t seed) {
   Relocalization result;
   result.keyframe = candidate.id;
-  result.matches = MatchKeyFrame(map, candidate, *candidate.words, features, words, options.match_ratio);
+  result.matches =
+      MatchKeyFrame(map, candidate, *candidate.words, features, words, options.match_ratio);
   if (static_cast<int>(result.matches.size()) < options.min_matches) return std::nullopt;
-  const std::optional<Rigid3d> consensus = FindConsensus(context, options, features, seed, result.matches);
+  const std::optional<Rigid3d> consensus =
+      FindConsensus(context, options, features, seed, result.matches);
   if (!consensus) return std::nullopt;
   result.T_cw = *consensus;
-  if (!OptimizeFramePose(context, features, context.options.min_pose_inliers, result.matches, result.T_cw)) {
+  if (!OptimizeFramePose(context, features, context.options.min_pose_inliers, result.matches,
+                         result.T_cw)) {
     return std::nullopt;
   }
-  const auto enough = [&] { return static_cast<int>(result.matches.size()) >= options.min_inliers; };
+  const auto enough = [&] {
+    return static_cast<int>(result.matches.size()) >= options.min_inliers;
+  };
   const auto grow = [&](double radius_px, int max_distance) {
-    return GrowMatches(context, map, candidate, radius_px, max_distance, features, result.matches, result.T_cw);
+    return GrowMatches(context, map, candidate, radius_px, max_distance, features, result.matches,
+                       result.T_cw);
   };
   if (!enough() && !grow(options.wide_radius_px, options.wide_max_distance)) return std::nullopt;
   const bool promising = static_cast<int>(result.matches.size()) > options.narrow_from_inliers;
-  if (!enough() && promising && !grow(options.narrow_radius_px, options.narrow_max_distance)) return std::nullopt;
+  if (!enough() && promising && !grow(options.narrow_radius_px, options.narrow_max_distance))
+    return std::nullopt;
   return enough() ? std::optional(result) : std::nullopt;
 }
 
 }  // namespace
 
-std::optional<Relocalization> Relocalize(const TrackingContext& context, const RelocalizationOptions& options,
-                                         const Map& map, const std::vector<KeyFrameId>& candidates,
-                                         const FrameFeatures& features, const BagOfWords& words, uint64_t seed) {
+std::optional<Relocalization> Relocalize(const TrackingContext& context,
+                                         const RelocalizationOptions& options, const Map& map,
+                                         const std::vector<KeyFrameId>& candidates,
+                                         const FrameFeatures& features, const BagOfWords& words,
+                                         uint64_t seed) {
   for (const KeyFrameId id : candidates) {
     const KeyFrame* candidate = map.FindKeyFrame(id);
     if (!candidate || !candidate->words) continue;
     std::optional<Relocalization> found =
-        TryCandidate(context, options, map, *candidate, features, words, seed + static_cast<uint64_t>(id.value()));
+        TryCandidate(context, options, map, *candidate, features, words,
+                     seed + static_cast<uint64_t>(id.value()));
     if (found) return found;
   }
   return std::nullopt;

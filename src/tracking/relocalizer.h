@@ -33,7 +33,8 @@ struct RelocalizationOptions {
     visit("wide_max_distance", wide_max_distance, "and its descriptor distance");
     visit("narrow_radius_px", narrow_radius_px, "second guided search, px at level 0");
     visit("narrow_max_distance", narrow_max_distance, "and its descriptor distance");
-    visit("narrow_from_inliers", narrow_from_inliers, "the second search is tried above this many inliers");
+    visit("narrow_from_inliers", narrow_from_inliers,
+          "the second search is tried above this many inliers");
   }
 };
 
@@ -43,9 +44,12 @@ struct Relocalization {
   KeyFrameId keyframe;
 };
 
-// Tries the candidates in their order: words, PnP with RANSAC, optimisation, guided search. `seed` makes it repeatable.
-std::optional<Relocalization> Relocalize(const TrackingContext& context, const RelocalizationOptions& options,
-                                         const Map& map, const std::vector<KeyFrameId>& candidates,
-                                         const FrameFeatures& features, const BagOfWords& words, uint64_t seed);
+// Tries the candidates in their order: words, PnP with RANSAC, optimisation, guided search. `seed`
+// makes it repeatable.
+std::optional<Relocalization> Relocalize(const TrackingContext& context,
+                                         const RelocalizationOptions& options, const Map& map,
+                                         const std::vector<KeyFrameId>& candidates,
+                                         const FrameFeatures& features, const BagOfWords& words,
+                                         uint64_t seed);
 
 }  // namespace msf

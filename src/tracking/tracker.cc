@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tracking/keyframe_creation.h"
+#include "tracking/static_evidence.h"
 
 namespace msf {
 namespace {
@@ -16,27 +17,38 @@ constexpr int kMaxLocateAttempts = 3;
 
 const char* ToString(TrackingState state) {
   switch (state) {
-    case TrackingState::kInitialising: return "initialising";
-    case TrackingState::kTracking: return "tracking";
-    case TrackingState::kRecentlyLost: return "recently_lost";
-    case TrackingState::kLost: return "lost";
+    case TrackingState::kInitialising:
+      return "initialising";
+    case TrackingState::kTracking:
+      return "tracking";
+    case TrackingState::kRecentlyLost:
+      return "recently_lost";
+    case TrackingState::kLost:
+      return "lost";
   }
   return "unknown";
 }
 
-Tracker::Tracker(const Options& options, std::shared_ptr<const Camera> camera, const ScaleLevels& levels,
-                 SharedMap& map, std::shared_ptr<const Vocabulary> vocabulary, const KeyFrameDatabase& database)
-    : options_(options), camera_(std::move(camera)), levels_(levels),
-      context_{*camera_, levels_, options_.tracking, options_.noise}, map_(map), vocabulary_(std::move(vocabulary)),
+Tracker::Tracker(const Options& options, std::shared_ptr<const Camera> camera,
+                 const ScaleLevels& levels, SharedMap& map,
+                 std::shared_ptr<const Vocabulary> vocabulary, const KeyFrameDatabase& database)
+    : options_(options),
+      camera_(std::move(camera)),
+      levels_(levels),
+      context_{*camera_, levels_, options_.tracking, options_.noise},
+      map_(map),
+      vocabulary_(std::move(vocabulary)),
       database_(database) {}
 
 TrackingResult Tracker::Track(RgbdFramePtr image, std::shared_ptr<const FrameFeatures> features,
+                              std::shared_ptr<const FrameFeatures> removed,
                               const MappingLoad& load) {
   TrackingResult result;
   result.frame_id = image->id;
   result.time_s = image->time_s;
   result.num_features = features->size();
-  frame_ = Frame{.image = std::move(image), .features = std::move(features)};
+  frame_ = Frame{
+      .image = std::move(image), .features = std::move(features), .removed = std::move(removed)};
   frame_.points.assign(frame_.features->size(), MapPointId());
   matches_.clear();
 
@@ -59,7 +71,8 @@ Rigid3d Tracker::PredictMotion(double duration_s) const {
 }
 
 bool Tracker::StartMap(TrackingResult& result) {
-  const int with_depth = static_cast<int>(std::count_if(frame_.features->depth_m.begin(), frame_.features->depth_m.end(),
+  const int with_depth = static_cast<int>(std::count_if(frame_.features->depth_m.begin(),
+                                                        frame_.features->depth_m.end(),
                                                         [](float depth_m) { return depth_m > 0; }));
   if (frame_.features->size() < options_.tracking.min_initial_points) return false;
   if (with_depth < options_.tracking.min_initial_depths) return false;
@@ -72,8 +85,8 @@ bool Tracker::StartMap(TrackingResult& result) {
   return true;
 }
 
-// Another thread may correct the whole map in the middle of a frame, and places from before and after do not go together: then the
-// frame is located once more.
+// Another thread may correct the whole map in the middle of a frame, and places from before and
+// after do not go together: then the frame is located once more.
 bool Tracker::Locate(TrackingResult& result) {
   for (int attempt = 1;; ++attempt) {
     epoch_ = map_.Read()->epoch();
@@ -89,19 +102,23 @@ bool Tracker::FindPose(TrackingResult& result) {
   if (state_ == TrackingState::kTracking) {
     RefreshLastFrame();
     // Without a velocity the camera may be anywhere near: words need no prediction.
-    const bool found = velocity_ ? FollowMotion() || FollowReferenceKeyFrame() : FollowReferenceKeyFrame() || FollowMotion();
+    const bool found = velocity_ ? FollowMotion() || FollowReferenceKeyFrame()
+                                 : FollowReferenceKeyFrame() || FollowMotion();
     if (found) return true;
   }
   return RelocalizeFrame();
 }
 
-void Tracker::RefreshLastFrame() { last_.T_cw = last_.T_c_reference * map_.Read()->PoseOf(last_.reference); }
+void Tracker::RefreshLastFrame() {
+  last_.T_cw = last_.T_c_reference * map_.Read()->PoseOf(last_.reference);
+}
 
 bool Tracker::FollowMotion() {
   frame_.T_cw = velocity_ ? *velocity_ * last_.T_cw : last_.T_cw;
   matches_ = MatchLastFrame(context_, *map_.Read(), last_, *frame_.features, frame_.T_cw);
   if (static_cast<int>(matches_.size()) < options_.tracking.min_motion_matches) return false;
-  return OptimizeFramePose(context_, *frame_.features, options_.tracking.min_pose_inliers, matches_, frame_.T_cw);
+  return OptimizeFramePose(context_, *frame_.features, options_.tracking.min_pose_inliers, matches_,
+                           frame_.T_cw);
 }
 
 bool Tracker::FollowReferenceKeyFrame() {
@@ -111,24 +128,28 @@ bool Tracker::FollowReferenceKeyFrame() {
     const KeyFrame* reference = map->FindKeyFrame(last_.reference);
     if (!reference) return false;
     const BagOfWords reference_words =
-        reference->words ? *reference->words : vocabulary_->Transform(reference->features->descriptors);
+        reference->words ? *reference->words
+                         : vocabulary_->Transform(reference->features->descriptors);
     matches_ = MatchKeyFrame(*map, *reference, reference_words, *frame_.features, words,
                              options_.tracking.reference_match_ratio);
   }
   if (static_cast<int>(matches_.size()) < options_.tracking.min_reference_matches) return false;
   frame_.T_cw = last_.T_cw;
-  return OptimizeFramePose(context_, *frame_.features, options_.tracking.min_pose_inliers, matches_, frame_.T_cw);
+  return OptimizeFramePose(context_, *frame_.features, options_.tracking.min_pose_inliers, matches_,
+                           frame_.T_cw);
 }
 
 bool Tracker::RelocalizeFrame() {
   if (frame_.features->size() < options_.relocalization.min_matches) return false;
   const BagOfWords& words = FrameWords();
   const SharedMap::Reader map = map_.Read();
-  const auto covisible = [&](KeyFrameId id) { return map->covisibility().Best(id, options_.tracking.max_neighbours); };
+  const auto covisible = [&](KeyFrameId id) {
+    return map->covisibility().Best(id, options_.tracking.max_neighbours);
+  };
   const std::vector<KeyFrameId> candidates = database_.RelocalizationCandidates(words, covisible);
   const uint64_t seed = options_.seed + static_cast<uint64_t>(frame_.image->id.value());
-  std::optional<Relocalization> found =
-      Relocalize(context_, options_.relocalization, *map, candidates, *frame_.features, words, seed);
+  std::optional<Relocalization> found = Relocalize(context_, options_.relocalization, *map,
+                                                   candidates, *frame_.features, words, seed);
   if (!found) return false;
   frame_.T_cw = found->T_cw;
   frame_.reference = found->keyframe;
@@ -144,14 +165,16 @@ bool Tracker::RefineWithLocalMap(TrackingResult& result) {
   local_map_.Update(*map_.Read(), frame_, options.max_local_keyframes, options.max_neighbours);
   const bool fresh = frame_.image->time_s - relocalized_time_s_ < kFreshlyRelocalized_s;
   const int min_inliers = fresh ? options.min_local_inliers_relocalized : options.min_local_inliers;
-  double radius_factor = fresh ? options.local_radius_factor_relocalized : options.local_radius_factor;
+  double radius_factor =
+      fresh ? options.local_radius_factor_relocalized : options.local_radius_factor;
   std::vector<MapPointId> expected;
   bool tracked = true;
-  // The first search starts from a prediction and finds what pulls the pose into place; the second one starts there, so that points
-  // which a fast turn or a poor first pose had put too far away are found as well.
+  // The first search starts from a prediction and finds what pulls the pose into place; the second
+  // one starts there, so that points which a fast turn or a poor first pose had put too far away
+  // are found as well.
   for (int round = 0; round < options.local_search_rounds && tracked; ++round) {
-    LocalMatches local =
-        MatchLocalPoints(context_, local_map_.points(), *frame_.features, frame_.T_cw, matches_, radius_factor);
+    LocalMatches local = MatchLocalPoints(context_, local_map_.points(), *frame_.features,
+                                          frame_.T_cw, matches_, radius_factor);
     expected = std::move(local.expected);
     matches_.insert(matches_.end(), local.matches.begin(), local.matches.end());
     tracked = OptimizeFramePose(context_, *frame_.features, min_inliers, matches_, frame_.T_cw);
@@ -163,6 +186,16 @@ bool Tracker::RefineWithLocalMap(TrackingResult& result) {
   frame_.reference = local_map_.best_keyframe();
   frame_.T_c_reference = frame_.T_cw * local_map_.T_cw_best_keyframe().Inverse();
 
+  TellMap(expected, tracked);
+  return tracked;
+}
+
+void Tracker::TellMap(const std::vector<MapPointId>& expected, bool tracked) {
+  std::vector<StaticEvidence> evidence;
+  if (tracked) {
+    evidence = GatherStaticEvidence(context_, local_map_.points(), *frame_.features, matches_,
+                                    *frame_.removed, frame_.T_cw);
+  }
   SharedMap::Writer map = map_.Write();
   for (const MapPointId id : expected) {
     if (map->FindPoint(id)) map->CountVisible(id);
@@ -170,7 +203,9 @@ bool Tracker::RefineWithLocalMap(TrackingResult& result) {
   for (const PointMatch& match : matches_) {
     if (map->FindPoint(match.point)) map->CountFound(match.point);
   }
-  return tracked;
+  for (const auto& [id, probability] : evidence) {
+    if (map->FindPoint(id)) map->ObserveStaticProbability(id, probability);
+  }
 }
 
 void Tracker::TakeMatches(std::vector<PointMatch> matches) {
@@ -184,7 +219,8 @@ void Tracker::InsertKeyFrameIfWanted(const MappingLoad& load, TrackingResult& re
   evidence.since_last_s = result.time_s - last_keyframe_time_s_;
   if (!WantsKeyFrame(evidence, load, options_.tracking.keyframe)) return;
   SharedMap::Writer map = map_.Write();
-  // The map may have been corrected since it was matched: the frame joins it where its reference keyframe is now.
+  // The map may have been corrected since it was matched: the frame joins it where its reference
+  // keyframe is now.
   frame_.T_cw = frame_.T_c_reference * map->PoseOf(frame_.reference);
   // Relocalisation may have found the camera in an older map.
   map->SetActiveMap(map->MapOf(frame_.reference));
@@ -209,7 +245,8 @@ void Tracker::UpdateState(bool tracked, TrackingResult& result) {
     state_ = TrackingState::kLost;
     SharedMap::Writer map = map_.Write();
     const MapId active = map->active_map();
-    if (map->NumKeyFrames(active) < options_.tracking.min_keyframes_to_keep_map) map->DropMap(active);
+    if (map->NumKeyFrames(active) < options_.tracking.min_keyframes_to_keep_map)
+      map->DropMap(active);
   }
   result.state = state_;
 }
@@ -234,7 +271,8 @@ void Tracker::RememberFrame(bool tracked, TrackingResult& result) {
 
 const BagOfWords& Tracker::FrameWords() {
   if (!frame_.words) {
-    frame_.words = std::make_shared<const BagOfWords>(vocabulary_->Transform(frame_.features->descriptors));
+    frame_.words =
+        std::make_shared<const BagOfWords>(vocabulary_->Transform(frame_.features->descriptors));
   }
   return *frame_.words;
 }

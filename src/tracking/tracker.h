@@ -14,7 +14,8 @@
 
 namespace msf {
 
-// Single-threaded; shares the map and the keyframe database with mapping and loop closing, which may run beside it.
+// Single-threaded; shares the map and the keyframe database with mapping and loop closing, which
+// may run beside it.
 class Tracker {
  public:
   struct Options {
@@ -23,14 +24,18 @@ class Tracker {
     NoiseOptions noise;
     uint64_t seed = 0;
   };
-  Tracker(const Options& options, std::shared_ptr<const Camera> camera, const ScaleLevels& levels, SharedMap& map,
-          std::shared_ptr<const Vocabulary> vocabulary, const KeyFrameDatabase& database);
+  Tracker(const Options& options, std::shared_ptr<const Camera> camera, const ScaleLevels& levels,
+          SharedMap& map, std::shared_ptr<const Vocabulary> vocabulary,
+          const KeyFrameDatabase& database);
 
-  // Frames must come in the order of time. `load` says how busy the mapper is.
-  TrackingResult Track(RgbdFramePtr image, std::shared_ptr<const FrameFeatures> features, const MappingLoad& load);
+  // Frames must come in the order of time. `removed`: features that seem to move; they are not
+  // used, but points of the map that look like them are doubted. `load` says how busy the mapper
+  // is.
+  TrackingResult Track(RgbdFramePtr image, std::shared_ptr<const FrameFeatures> features,
+                       std::shared_ptr<const FrameFeatures> removed, const MappingLoad& load);
 
-  // How the camera will have moved `duration_s` from now if it goes on as it does: takes its coordinates of
-  // now to those of then. No motion while the velocity is not known.
+  // How the camera will have moved `duration_s` from now if it goes on as it does: takes its
+  // coordinates of now to those of then. No motion while the velocity is not known.
   Rigid3d PredictMotion(double duration_s) const;
 
  private:
@@ -44,6 +49,8 @@ class Tracker {
   bool RelocalizeFrame();
   // Matches the local map and optimises once more; false when too little of it agrees.
   bool RefineWithLocalMap(TrackingResult& result);
+  // What this frame says about the points of the map: `expected` ones should be visible.
+  void TellMap(const std::vector<MapPointId>& expected, bool tracked);
   void InsertKeyFrameIfWanted(const MappingLoad& load, TrackingResult& result);
   void BecomeKeyFrame(Map& map, TrackingResult& result);
   void UpdateState(bool tracked, TrackingResult& result);
@@ -66,8 +73,9 @@ class Tracker {
   Frame frame_;  // the present one
   Frame last_;   // the last one that had a pose
   std::vector<PointMatch> matches_;
-  std::optional<Rigid3d> velocity_;  // T_cl: last camera to present camera, from one frame to the next
-  double velocity_interval_s_ = 0;   // the time between these two
+  std::optional<Rigid3d>
+      velocity_;  // T_cl: last camera to present camera, from one frame to the next
+  double velocity_interval_s_ = 0;  // the time between these two
   LocalMap local_map_;
   uint64_t epoch_ = 0;  // of the map that the frame was located in
   bool last_frame_tracked_ = false;

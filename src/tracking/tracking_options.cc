@@ -3,15 +3,20 @@
 namespace msf {
 
 Status TrackingOptions::Check() const {
-  if (min_initial_points < 10) return Status::Error("tracking.min_initial_points must be at least 10");
-  if (close_depth_baselines <= 0) return Status::Error("tracking.close_depth_baselines must be positive");
+  if (min_initial_points < 10)
+    return Status::Error("tracking.min_initial_points must be at least 10");
+  if (close_depth_baselines <= 0)
+    return Status::Error("tracking.close_depth_baselines must be positive");
   if (motion_radius_px <= 0 || local_radius_factor <= 0 || local_radius_factor_relocalized <= 0) {
     return Status::Error("tracking: search radii must be positive");
   }
-  if (max_local_keyframes < 1) return Status::Error("tracking.max_local_keyframes must be at least 1");
-  if (local_search_rounds < 1) return Status::Error("tracking.local_search_rounds must be at least 1");
+  if (max_local_keyframes < 1)
+    return Status::Error("tracking.max_local_keyframes must be at least 1");
+  if (local_search_rounds < 1)
+    return Status::Error("tracking.local_search_rounds must be at least 1");
   if (recently_lost_s < 0) return Status::Error("tracking.recently_lost_s must not be negative");
-  if (keyframe.max_interval_s <= 0) return Status::Error("tracking.keyframe.max_interval_s must be positive");
+  if (keyframe.max_interval_s <= 0)
+    return Status::Error("tracking.keyframe.max_interval_s must be positive");
   return pose.Check();
 }
 

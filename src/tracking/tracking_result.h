@@ -22,7 +22,8 @@ struct TrackingResult {
   FrameId frame_id;
   double time_s = 0;
   TrackingState state = TrackingState::kInitialising;
-  std::optional<Rigid3d> T_cw;  // world to camera, in the coordinates of map_id at this moment; empty without a pose
+  std::optional<Rigid3d>
+      T_cw;  // world to camera, in the coordinates of map_id at this moment; empty without a pose
   MapId map_id;
   int num_features = 0;
   int num_inliers = 0;  // map points that agree with the pose

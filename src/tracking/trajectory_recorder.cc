@@ -3,8 +3,8 @@
 namespace msf {
 
 void TrajectoryRecorder::Record(const TrackingResult& result) {
-  entries_.push_back({result.frame_id, result.time_s, result.state, result.T_cw ? result.reference : KeyFrameId(),
-                      result.T_c_reference});
+  entries_.push_back({result.frame_id, result.time_s, result.state,
+                      result.T_cw ? result.reference : KeyFrameId(), result.T_c_reference});
 }
 
 std::vector<ResolvedFrame> TrajectoryRecorder::Resolve(const Map& map) const {

@@ -1,4 +1,5 @@
-// Remembers every frame relative to its reference keyframe, so that later corrections of the map reach it.
+// Remembers every frame relative to its reference keyframe, so that later corrections of the map
+// reach it.
 #pragma once
 
 #include <optional>

@@ -99,9 +99,7 @@ cv::Matx33d DrawMap(const LabeledImage& source, bool is_mosaic, int side,
   return map;
 }
 
-bool IsUpright(const cv::Matx23d& map) {
-  return std::abs(std::atan2(map(0, 1), map(1, 1))) <= 10.0 * kPi / 180.0;
-}
+double AngleOf(const cv::Matx23d& map) { return std::atan2(-map(0, 1), map(1, 1)); }
 
 }  // namespace
 
@@ -151,7 +149,7 @@ LabeledImage MakeTrainingPicture(const std::vector<LabeledImage>& images, size_t
   cv::warpAffine(source.pixels, picture.pixels, map, {side, side}, cv::INTER_LINEAR,
                  cv::BORDER_CONSTANT, kGrey);
   picture.objects = TransformObjects(source.objects, map, {side, side}, options.min_visible);
-  picture.upright = IsUpright(map);
+  picture.angle = AngleOf(map);
   ChangeColours(picture.pixels, options.hue, options.saturation, options.value, random);
   if (Uniform(random, 0.0, 1.0) < options.blur) Blur(picture.pixels, random);
   return picture;

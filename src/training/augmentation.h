@@ -16,7 +16,7 @@ namespace msf {
 struct LabeledImage {
   cv::Mat pixels;
   std::vector<VocObject> objects;
-  bool upright = true;  // not rotated by more than 10 degrees
+  double angle = 0.0;  // by which the image was rotated, radians, clockwise
 };
 
 struct AugmentationOptions {

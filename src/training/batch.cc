@@ -75,7 +75,7 @@ int EpochSampler::num_batches() const {
 Batch EpochSampler::Make(int index) const {
   std::vector<LabeledImage> pictures;
   std::vector<std::vector<VocObject>> objects;
-  std::vector<int64_t> upright;
+  std::vector<double> angles;
   for (int i = 0; i < options_.batch; ++i) {
     const size_t place = static_cast<size_t>(index) * options_.batch + i;
     std::seed_seq mix{seed_ >> 32, seed_ & 0xFFFFFFFFU, static_cast<uint64_t>(place)};
@@ -83,9 +83,9 @@ Batch EpochSampler::Make(int index) const {
     pictures.push_back(MakeTrainingPicture(images_, order_[place % order_.size()], options_.side,
                                            options_.augmentation, random));
     objects.push_back(pictures.back().objects);
-    if (pictures.back().upright) upright.push_back(i);
+    angles.push_back(pictures.back().angle);
   }
-  return {ImagesToTensor(pictures), PadLabels(objects), torch::tensor(upright, torch::kLong)};
+  return {ImagesToTensor(pictures), PadLabels(objects), torch::tensor(angles, torch::kDouble)};
 }
 
 }  // namespace msf

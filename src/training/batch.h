@@ -16,7 +16,7 @@ torch::Tensor ImagesToTensor(const std::vector<LabeledImage>& pictures);
 struct Batch {
   torch::Tensor images;
   BatchLabels labels;
-  torch::Tensor upright;  // [n] indices of the pictures that are not rotated
+  torch::Tensor angles;  // [batch] by which the pictures were rotated, radians
 };
 
 // All images in memory, decoded. A file that is no image is an error that names it.

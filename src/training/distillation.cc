@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "training/mixed_precision.h"
+#include "training/turning.h"
 #include "util/check.h"
 
 namespace msf {
@@ -21,10 +22,12 @@ torch::Tensor RelativeError(const torch::Tensor& given, const torch::Tensor& wan
 
 // The same for class logits, weighted by the teacher's scores: almost all cells are background, the
 // few others are what matters.
-torch::Tensor ScoreWeightedError(const torch::Tensor& given, const torch::Tensor& wanted) {
+// `counted`: [batch, 1, h, w], 1 for cells that count, else 0.
+torch::Tensor ScoreWeightedError(const torch::Tensor& given, const torch::Tensor& wanted,
+                                 const torch::Tensor& counted) {
   constexpr double kBackgroundWeight = 0.02;
   const torch::Tensor target = wanted.to(torch::kFloat);
-  const torch::Tensor weight = target.sigmoid() + kBackgroundWeight;
+  const torch::Tensor weight = (target.sigmoid() + kBackgroundWeight) * counted;
   const torch::Tensor error = (given.to(torch::kFloat) - target).square() * weight;
   return error.sum() / (weight.sum() * (target.var() + 1e-3));
 }
@@ -97,7 +100,9 @@ torch::Tensor LayerDistillation::LayerError(
   }
   if (own.layers[layer].type == "Detect") {
     student_.RunNodes(nodes.begin, nodes.end, values);
-    return ClassDistance(student_.HeadsOf(values), teacher_.HeadsOf(teacher_values));
+    const HeadOutputs heads = student_.HeadsOf(values);
+    return ClassDistance(heads, teacher_.HeadsOf(teacher_values),
+                         torch::zeros({heads.classes[0].size(0)}));
   }
   const torch::Tensor& wanted = teacher_values[other.LayerOutput(layer)];
   torch::Tensor& input = values[own.nodes[nodes.begin].inputs[0]];
@@ -140,10 +145,15 @@ std::vector<double> LayerDistillation::Errors(const torch::Tensor& images, bool 
   return errors;
 }
 
-torch::Tensor ClassDistance(const HeadOutputs& student, const HeadOutputs& teacher) {
+torch::Tensor ClassDistance(const HeadOutputs& student, const HeadOutputs& teacher,
+                            const torch::Tensor& angles) {
+  constexpr double kNothing = -10.0;
   torch::Tensor sum = torch::zeros({});
-  for (size_t i = 0; i < student.classes.size(); ++i)
-    sum = sum + ScoreWeightedError(student.classes[i], teacher.classes[i]);
+  for (size_t i = 0; i < student.classes.size(); ++i) {
+    const torch::Tensor wanted = TurnMaps(teacher.classes[i], -angles, kNothing);
+    sum =
+        sum + ScoreWeightedError(student.classes[i], wanted, TurnedInside(wanted.size(2), -angles));
+  }
   return sum / static_cast<double>(student.classes.size());
 }
 

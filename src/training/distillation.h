@@ -43,7 +43,10 @@ class LayerDistillation {
 
 // Distance of a student's class logits to its teacher's: squared error over variance, weighted by
 // the teacher's scores, mean over the scales. Keeps what the teacher knows of classes that the
-// training images hardly show.
-torch::Tensor ClassDistance(const HeadOutputs& student, const HeadOutputs& teacher);
+// training images hardly show. `angles` ([batch], radians): by how much the student's pictures were
+// rotated from those the teacher was shown; its logits are turned alike, and cells whose
+// counterpart it did not see do not count.
+torch::Tensor ClassDistance(const HeadOutputs& student, const HeadOutputs& teacher,
+                            const torch::Tensor& angles);
 
 }  // namespace msf

@@ -13,12 +13,16 @@
 #include "training/head_decoding.h"
 #include "training/mixed_precision.h"
 #include "training/msf_initialization.h"
+#include "training/turning.h"
 #include "training/validation.h"
 #include "training/weight_adaptation.h"
 
 namespace msf {
 
 namespace {
+
+constexpr double kUpright = 0.175;       // rad, 10 degrees: up to here a picture counts as upright
+constexpr double kGrey = 114.0 / 255.0;  // of borders, as in MakeTrainingPicture
 
 ModelConfig TeacherConfig(const std::vector<std::string>& classes, int class_width) {
   ModelConfig config;
@@ -88,6 +92,11 @@ Status Trainer::Initialize(const NamedTensors& weights) {
     if (wide != same->end() && wide->second.sizes() != tensor.sizes()) new_tensors_.push_back(name);
   }
   return Status::Ok();
+}
+
+Status Trainer::StartFrom(const NamedTensors& weights) {
+  new_tensors_.clear();
+  return network_.Load(weights);
 }
 
 void Trainer::InitializeBlocks() {
@@ -178,16 +187,14 @@ HeadOutputs Trainer::ForwardForTraining(const Batch& batch, torch::Tensor& dista
   network_.RunNodes(frozen, static_cast<int>(values.size()), values);
   HeadOutputs heads = network_.HeadsOf(values);
   distance = torch::zeros({});
-  // The teacher has never seen rotated pictures: what it says about them would do harm.
-  if (teacher_ && options_.imitation > 0.0 && batch.upright.numel() > 0) {
+  if (teacher_ && options_.imitation > 0.0) {
+    // The teacher has never seen rotated pictures: it is shown them upright.
+    const torch::Tensor angles = batch.angles * (batch.angles.abs() > kUpright);
     const HeadOutputs wanted = [&] {
       const torch::NoGradGuard no_grad;
-      return teacher_->Forward(batch.images.index_select(0, batch.upright));
+      return teacher_->Forward(TurnMaps(batch.images, angles, kGrey));
     }();
-    HeadOutputs given;
-    for (const torch::Tensor& map : heads.classes)
-      given.classes.push_back(map.index_select(0, batch.upright));
-    distance = ClassDistance(given, wanted);
+    distance = ClassDistance(heads, wanted, angles);
   }
   return heads;
 }

@@ -63,7 +63,7 @@ struct TrainOptions {
     visit(
         "imitation", imitation,
         "weight of the distance to the class logits of the network that gave the starting weights, "
-        "on pictures that are not rotated");
+        "which sees rotated pictures upright");
     visit("average_decay", average_decay,
           "decay of the moving average of weights that is kept in the end");
     visit("average_ramp", average_ramp, "updates over which that decay rises");
@@ -111,6 +111,10 @@ class Trainer {
   // from it in Run().
   Status Initialize(const NamedTensors& weights);
 
+  // Goes on from the weights of an earlier training of the very same model instead: nothing is
+  // distilled. After Initialize(), whose network remains the teacher.
+  Status StartFrom(const NamedTensors& weights);
+
   // Trains until the end, writing DIR/checkpoint.pt after every epoch, DIR/curves.csv,
   // DIR/curves.svg, and at the end DIR/weights.pt (the moving average). Goes on from
   // DIR/checkpoint.pt where there is one of the same options; the result is then the same as
@@ -128,8 +132,7 @@ class Trainer {
   void Distill();
   void TrainEpoch(int epoch);
   EpochSampler Sampler(int epoch, double mosaic) const;
-  // Outputs for a batch, gradients recorded, and the distance to the teacher's on the pictures that
-  // are upright (0 without a teacher or such pictures).
+  // Outputs for a batch, gradients recorded, and the distance to the teacher's (0 without one).
   HeadOutputs ForwardForTraining(const Batch& batch, torch::Tensor& distance);
   std::set<std::string> TrainedParameters() const;
   // The blocks without starting weights: new convolutions with their norms.

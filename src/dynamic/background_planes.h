@@ -1,0 +1,16 @@
+// Large flat surfaces - walls, floors, tables - that go on outside of objects' boxes: what lies on
+// one is not the object, however close the object comes to it.
+#pragma once
+
+#include "dynamic/block_rays.h"
+#include "dynamic/dynamic_options.h"
+
+namespace msf {
+
+// Blocks on planes: 255, others 0. Those where `in_box` is 255 must hang together with a part of
+// the plane where it is not: a box may hold something flat that moves. Consensus over samples
+// decided by `seed`.
+cv::Mat1b FindPlaneBlocks(const CoarseDepth& depth, const BlockRays& rays,
+                          const cv::Mat1b& excluded, const PlaneOptions& options, uint64_t seed);
+
+}  // namespace msf

@@ -1,0 +1,90 @@
+#include "dynamic/background_planes.h"
+
+#include <gtest/gtest.h>
+
+#include "dynamic/test_scene.h"
+
+namespace msf {
+namespace {
+
+constexpr int kBlock_px = BlockRays::kBlockCells * CoarseDepth::kCellSize;
+
+class BackgroundPlanesTest : public ::testing::Test {
+ protected:
+  // A floor 1 m below the camera, which looks down on it by 45 degrees, and on it a ball-like thing
+  // in the middle of the image.
+  static CoarseDepth FloorAndThing(double radius_m) {
+    const Camera& camera = *TestCamera();
+    RgbdFrame frame;
+    frame.camera = TestCamera();
+    frame.depth = cv::Mat(camera.height, camera.width, CV_16U, cv::Scalar(0));
+    const Eigen::Vector3d down = Eigen::Vector3d(0, 1, 1).normalized(), centre(0, 0, 1.4);
+    for (int y = 0; y < camera.height; ++y) {
+      for (int x = 0; x < camera.width; ++x) {
+        const Eigen::Vector3d ray = camera.Unproject(Eigen::Vector2d(x, y), 1);
+        double z = 1 / down.dot(ray);
+        const double a = ray.squaredNorm(), b = ray.dot(centre),
+                     c = centre.squaredNorm() - radius_m * radius_m, root = b * b - a * c;
+        if (root > 0) z = std::min(z, (b - std::sqrt(root)) / a);
+        if (z > 0 && z < 8)
+          frame.depth.at<uint16_t>(y, x) = static_cast<uint16_t>(z * camera.depth_factor);
+      }
+    }
+    return CoarseDepth(frame);
+  }
+  cv::Mat1b Find(const CoarseDepth& depth, const cv::Rect& box_px,
+                 const PlaneOptions& options = {}) const {
+    cv::Mat1b in_box(rays_.rows(), rays_.cols(), static_cast<uint8_t>(0));
+    in_box(cv::Rect(box_px.tl() / kBlock_px, box_px.br() / kBlock_px)) = 255;
+    return FindPlaneBlocks(depth, rays_, in_box, options, 1);
+  }
+  static bool At(const cv::Mat1b& blocks, int x_px, int y_px) {
+    return blocks(y_px / kBlock_px, x_px / kBlock_px) != 0;
+  }
+
+  const BlockRays rays_{*TestCamera()};
+};
+
+TEST_F(BackgroundPlanesTest, TheFloorInABoxIsThePlaneAndTheThingOnItIsNot) {
+  const cv::Mat1b blocks = Find(FloorAndThing(0.25), {200, 120, 240, 280});
+  EXPECT_TRUE(At(blocks, 100, 300)) << "outside the box";
+  EXPECT_TRUE(At(blocks, 215, 380)) << "inside it, beside the thing";
+  EXPECT_FALSE(At(blocks, 320, 240)) << "the thing";
+}
+
+TEST_F(BackgroundPlanesTest, WhatIsFlatInTheBoxAloneIsNoPlane) {
+  const cv::Rect box(160, 120, 320, 240);
+  const CoarseDepth depth(DepthFrame(3, {{{200, 160, 240, 160}, 2.0f}}));
+  const cv::Mat1b blocks = Find(depth, box);
+  EXPECT_FALSE(At(blocks, 320, 240));
+  EXPECT_TRUE(At(blocks, 40, 40)) << "the wall";
+}
+
+TEST_F(BackgroundPlanesTest, WithoutDepthOrOptionsThereIsNone) {
+  const cv::Rect box(200, 120, 240, 280);
+  EXPECT_EQ(cv::countNonZero(Find(CoarseDepth(DepthFrame(0)), box)), 0);
+  EXPECT_EQ(cv::countNonZero(Find(FloorAndThing(0.25), box, {.max_planes = 0})), 0);
+  const cv::Rect everything(0, 0, TestCamera()->width, TestCamera()->height);
+  EXPECT_EQ(cv::countNonZero(Find(FloorAndThing(0.25), everything)), 0);
+  EXPECT_EQ(cv::countNonZero(Find(FloorAndThing(0.25), box, {.min_share = 0.99})), 0);
+}
+
+TEST_F(BackgroundPlanesTest, TheSameSeedGivesTheSameBlocks) {
+  const CoarseDepth depth = FloorAndThing(0.25);
+  const cv::Rect box(200, 120, 240, 280);
+  EXPECT_EQ(cv::countNonZero(Find(depth, box) != Find(depth, box)), 0);
+}
+
+TEST(BlockRays, PointsLieWhereTheirDepthWasTaken) {
+  const BlockRays rays(*TestCamera());
+  EXPECT_EQ(rays.rows(), 60);
+  EXPECT_EQ(rays.cols(), 80);
+  const Eigen::Vector3f p = rays.Point(CoarseDepth(DepthFrame(2)), 30, 40);
+  EXPECT_NEAR(p.z(), 2, 1e-3);
+  const Eigen::Vector2d px = TestCamera()->Project(p.cast<double>());
+  EXPECT_NEAR(px.x(), 40 * kBlock_px + 2, 1e-2);
+  EXPECT_NEAR(px.y(), 30 * kBlock_px + 2, 1e-2);
+}
+
+}  // namespace
+}  // namespace msf
