@@ -93,7 +93,8 @@ std::string TableToMarkdown(const Table& table) {
     text += "|";
     for (const Cell& cell : row) {
       const std::string shown = MarkdownText(TextOf(cell));
-      text += cell.published && !cell.text.empty() ? " *" + shown + "* |" : " " + shown + " |";
+      const char* mark = cell.published && !cell.text.empty() ? "*" : "";
+      text += fmt::format(" {0}{1}{0} |", mark, shown);
     }
     text += "\n";
   }
@@ -126,7 +127,8 @@ std::string TableToCsv(const Table& table) {
   const auto add_row = [&csv](const auto& cells, auto text_of) {
     const char* comma = "";
     for (const auto& cell : cells) {
-      csv += comma + CsvText(text_of(cell));
+      csv += comma;
+      csv += CsvText(text_of(cell));
       comma = ",";
     }
     csv += "\n";
