@@ -84,7 +84,8 @@ std::string EscapeHtml(const std::string& text) {
 
 std::string TableToMarkdown(const Table& table) {
   std::string text = "### " + table.title + "\n\n|";
-  for (const std::string& column : FlatColumns(table)) text += " " + MarkdownText(column) + " |";
+  for (const std::string& column : FlatColumns(table))
+    text += fmt::format(" {} |", MarkdownText(column));
   text += "\n|";
   for (size_t i = 0; i < table.columns.size(); ++i)
     text += i < static_cast<size_t>(table.num_label_columns) ? "---|" : "---:|";
@@ -98,7 +99,8 @@ std::string TableToMarkdown(const Table& table) {
     }
     text += "\n";
   }
-  return text + (table.note.empty() ? "" : "\n" + table.note + "\n") + "\n";
+  if (!table.note.empty()) text += fmt::format("\n{}\n", table.note);
+  return text + "\n";
 }
 
 std::string TableToHtml(const Table& table) {
