@@ -128,7 +128,10 @@ void Conclude(const fs::path& out, const BenchResults& results) {
   for (const std::string& problem : facts.problems) std::cout << "PROBLEM " << problem << "\n";
   std::cout << "report: " << (out / "report.html").string() << "\n";
   if (results.plan.tasks.empty())
-    throw CommandFailure("nothing was run: no data set of the suite is here");
+    throw CommandFailure("nothing was run: no sequence of the suite is here");
+  for (const MissingSequence& missing : results.plan.missing) {
+    if (!missing.reason.empty()) throw CommandFailure(DescribeMissing(missing));
+  }
   if (!facts.problems.empty()) {
     throw CommandFailure(fmt::format("{} of {} tasks did not succeed; the report says why",
                                      facts.problems.size(), results.results.size()));

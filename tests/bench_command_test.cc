@@ -204,15 +204,15 @@ TEST_F(BenchTest, ReportOpensInABrowser) {
 class SlurmNode {
  public:
   explicit SlurmNode(std::string folder) : folder_(std::move(folder)) {
-    start_ = RunShell(kScript + "start " + folder_);
+    start_ = RunShell(script_ + "start " + folder_);
   }
-  ~SlurmNode() { RunShell(kScript + "stop " + folder_); }
+  ~SlurmNode() { RunShell(script_ + "stop " + folder_); }
   SlurmNode(const SlurmNode&) = delete;
   SlurmNode& operator=(const SlurmNode&) = delete;
   const Outcome& start() const { return start_; }
 
  private:
-  const std::string kScript = "PATH=$PATH:/usr/sbin " MSF_SOURCE_DIR "/tests/slurm_node ";
+  const std::string script_ = "PATH=$PATH:/usr/sbin " MSF_SOURCE_DIR "/tests/slurm_node ";
   const std::string folder_;
   Outcome start_;
 };

@@ -90,7 +90,7 @@ std::string HtmlReport(const BenchResults& results, const std::vector<Table>& ta
   std::string html = Head(title) + "<h1>" + EscapeHtml(title) + "</h1>\n" + Navigation(results);
   html += List(facts.about, "about");
   if (!facts.missing.empty())
-    html += "<h3>Not run: data sets that are not here</h3>\n" + List(facts.missing, "missing");
+    html += "<h3>Not run: sequences that are not here</h3>\n" + List(facts.missing, "missing");
   if (!facts.problems.empty())
     html += "<h3>Did not succeed</h3>\n" + List(facts.problems, "problem");
   html += "<h2 id=\"tables\">Tables</h2>\n";

@@ -27,7 +27,7 @@ std::string MarkdownReport(const BenchResults& results, const std::vector<Table>
   const ReportFacts facts = GatherFacts(results);
   std::string text = fmt::format("# msf-slam bench: {}\n\n", results.suite.name);
   AddList("", facts.about, text);
-  AddList("Not run: data sets that are not here", facts.missing, text);
+  AddList("Not run: sequences that are not here", facts.missing, text);
   AddList("Did not succeed", facts.problems, text);
   text += "## Tables\n\n";
   for (const Table& table : tables) text += TableToMarkdown(table);

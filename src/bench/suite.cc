@@ -99,6 +99,7 @@ Status Keep(const std::string& what, const std::vector<std::string>& names,
   for (const std::string& name : names) {
     if (Find(entries, name) != nullptr) continue;
     std::vector<std::string> known;
+    known.reserve(entries.size());
     for (const Entry& entry : entries) known.push_back(entry.name);
     return Status::Error(
         fmt::format("the suite has no {} '{}', only: {}", what, name, fmt::join(known, ", ")));

@@ -84,7 +84,8 @@ std::string EscapeHtml(const std::string& text) {
 
 std::string TableToMarkdown(const Table& table) {
   std::string text = "### " + table.title + "\n\n|";
-  for (const std::string& column : FlatColumns(table)) text += " " + MarkdownText(column) + " |";
+  for (const std::string& column : FlatColumns(table))
+    text += fmt::format(" {} |", MarkdownText(column));
   text += "\n|";
   for (size_t i = 0; i < table.columns.size(); ++i)
     text += i < static_cast<size_t>(table.num_label_columns) ? "---|" : "---:|";
@@ -93,11 +94,13 @@ std::string TableToMarkdown(const Table& table) {
     text += "|";
     for (const Cell& cell : row) {
       const std::string shown = MarkdownText(TextOf(cell));
-      text += cell.published && !cell.text.empty() ? " *" + shown + "* |" : " " + shown + " |";
+      const char* mark = cell.published && !cell.text.empty() ? "*" : "";
+      text += fmt::format(" {0}{1}{0} |", mark, shown);
     }
     text += "\n";
   }
-  return text + (table.note.empty() ? "" : "\n" + table.note + "\n") + "\n";
+  if (!table.note.empty()) text += fmt::format("\n{}\n", table.note);
+  return text + "\n";
 }
 
 std::string TableToHtml(const Table& table) {
@@ -126,7 +129,8 @@ std::string TableToCsv(const Table& table) {
   const auto add_row = [&csv](const auto& cells, auto text_of) {
     const char* comma = "";
     for (const auto& cell : cells) {
-      csv += comma + CsvText(text_of(cell));
+      csv += comma;
+      csv += CsvText(text_of(cell));
       comma = ",";
     }
     csv += "\n";

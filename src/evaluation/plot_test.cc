@@ -88,6 +88,17 @@ TEST(SvgCanvas, EscapesText) {
   EXPECT_TRUE(IsBalanced(canvas.ToString()));
 }
 
+TEST(SvgCanvas, FillsAreasAndHoldsPictures) {
+  SvgCanvas canvas(200, 100);
+  Chart chart(canvas, {{50, 10, 100, 80}, "", "", "", {0, 10}, {0, 1}});
+  const std::vector<Eigen::Vector2d> area = {{0, 0}, {10, 0}, {10, 1}};
+  chart.Area(area, {255, 0, 0}, 0.5);
+  canvas.Image({1, 2, 30, 40}, "data:image/png;base64,AA==");
+  EXPECT_TRUE(IsBalanced(canvas.ToString()));
+  EXPECT_THAT(canvas.ToString(), HasSubstr("points=\"50.0,90.0 150.0,90.0 150.0,10.0\""));
+  EXPECT_THAT(canvas.ToString(), HasSubstr("href=\"data:image/png;base64,AA==\""));
+}
+
 TEST(Plots, ShowEveryEstimate) {
   const Trajectory truth = Circle(200, 1);
   Trajectory wobbly = truth;
