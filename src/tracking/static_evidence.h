@@ -23,7 +23,6 @@ std::vector<StaticEvidence> GatherStaticEvidence(const TrackingContext& context,
                                                  std::span<const PointSnapshot> local_points,
                                                  const FrameFeatures& features,
                                                  std::span<const PointMatch> matches,
-                                                 const FrameFeatures& removed,
-                                                 const Rigid3d& T_cw);
+                                                 const FrameFeatures& removed, const Rigid3d& T_cw);
 
 }  // namespace msf
