@@ -62,14 +62,16 @@ struct Sample {
   Eigen::Vector3f point, normal;
 };
 
-// Every other block.
-std::vector<Sample> TakeSamples(const CoarseDepth& depth, const BlockRays& rays) {
+// Every other block outside the boxes.
+std::vector<Sample> SamplesOutside(const CoarseDepth& depth, const BlockRays& rays,
+                                   const cv::Mat1b& in_box) {
   constexpr int kStep = 2, kReach = 4;
   std::vector<Sample> samples;
   for (int r = 0; r < rays.rows(); r += kStep) {
     for (int c = 0; c < rays.cols(); c += kStep) {
       const Eigen::Vector3f p = rays.Point(depth, r, c);
-      if (p.z() > 0) samples.push_back({p, NormalAt(depth, rays, r, c, kReach)});
+      if (p.z() > 0 && in_box(r, c) == 0)
+        samples.push_back({p, NormalAt(depth, rays, r, c, kReach)});
     }
   }
   return samples;
@@ -135,7 +137,7 @@ cv::Mat1b FindPlaneBlocks(const CoarseDepth& depth, const BlockRays& rays, const
                           const PlaneOptions& options, uint64_t seed) {
   cv::Mat1b on_plane(rays.rows(), rays.cols(), static_cast<uint8_t>(0));
   std::mt19937_64 random(seed);
-  const std::vector<Sample> samples = TakeSamples(depth, rays);
+  const std::vector<Sample> samples = SamplesOutside(depth, rays, in_box);
   std::vector<Eigen::Vector3f> points;
   for (const Sample& sample : samples) points.push_back(sample.point);
   for (int k = 0; k < options.max_planes && !points.empty(); ++k) {

@@ -7,10 +7,10 @@
 
 namespace msf {
 
-// Blocks on planes: 255, others 0. Those where `in_box` is 255 must hang together with a part of
-// the plane where it is not: a box may hold something flat that moves. Consensus over samples
-// decided by `seed`.
-cv::Mat1b FindPlaneBlocks(const CoarseDepth& depth, const BlockRays& rays,
-                          const cv::Mat1b& excluded, const PlaneOptions& options, uint64_t seed);
+// Blocks on planes: 255, others 0. Those where `in_box` is 255 make none and must hang together
+// with a part of the plane where it is not: a box may hold something flat that moves. Consensus
+// over samples decided by `seed`.
+cv::Mat1b FindPlaneBlocks(const CoarseDepth& depth, const BlockRays& rays, const cv::Mat1b& in_box,
+                          const PlaneOptions& options, uint64_t seed);
 
 }  // namespace msf

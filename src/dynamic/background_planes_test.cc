@@ -66,7 +66,6 @@ TEST_F(BackgroundPlanesTest, WithoutDepthOrOptionsThereIsNone) {
   EXPECT_EQ(cv::countNonZero(Find(FloorAndThing(0.25), box, {.max_planes = 0})), 0);
   const cv::Rect everything(0, 0, TestCamera()->width, TestCamera()->height);
   EXPECT_EQ(cv::countNonZero(Find(FloorAndThing(0.25), everything)), 0);
-  EXPECT_EQ(cv::countNonZero(Find(FloorAndThing(0.25), box, {.min_share = 0.99})), 0);
 }
 
 TEST_F(BackgroundPlanesTest, TheSameSeedGivesTheSameBlocks) {
