@@ -109,13 +109,13 @@ void AddQuantize(CLI::App& detector) {
   command->callback([arguments] { Quantize(*arguments); });
 }
 
-double ThreadCpuTime_ms() {
+double ThreadCpuTimeMs() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
 }
 
-double ResidentMemory_MB() {
+double ResidentMemoryMB() {
   std::ifstream statm("/proc/self/statm");
   int64_t total = 0, resident = 0;
   statm >> total >> resident;
@@ -145,20 +145,20 @@ void Time(TimeArguments& arguments) {
   // OpenCV spreads over all cores by itself; its setting is global, which only a program may touch.
   cv::setNumThreads(arguments.detector.options.threads);
   const cv::Mat picture = TestPicture();
-  const double memory_before = ResidentMemory_MB(), cpu_before = ThreadCpuTime_ms();
+  const double memory_before = ResidentMemoryMB(), cpu_before = ThreadCpuTimeMs();
   const Clock::time_point start = Clock::now();
   const std::unique_ptr<Detector> detector = arguments.detector.Make();
   Require(detector->DetectInImage(picture));
   const double first_wall_s = std::chrono::duration<double>(Clock::now() - start).count();
-  const double first_cpu_s = (ThreadCpuTime_ms() - cpu_before) * 1e-3;
+  const double first_cpu_s = (ThreadCpuTimeMs() - cpu_before) * 1e-3;
   std::vector<double> times_ms;
   for (int i = 0; i < arguments.runs; ++i) {
-    const double before = ThreadCpuTime_ms();
+    const double before = ThreadCpuTimeMs();
     Require(detector->DetectInImage(picture));
-    times_ms.push_back(ThreadCpuTime_ms() - before);
+    times_ms.push_back(ThreadCpuTimeMs() - before);
   }
   std::sort(times_ms.begin(), times_ms.end());
-  const double median = times_ms[times_ms.size() / 2], memory = ResidentMemory_MB() - memory_before;
+  const double median = times_ms[times_ms.size() / 2], memory = ResidentMemoryMB() - memory_before;
   std::cout << fmt::format(
       "{}: {:.2f} ms CPU per image (median of {}, fastest {:.2f}), first detection after {:.3f} s "
       "({:.3f} s CPU), {:.0f} MB\n",

@@ -73,7 +73,7 @@ StatusOr<std::vector<ScoredImage>> DetectorEvaluation::RunUpright() {
 }
 
 StatusOr<std::vector<ScoredImage>> DetectorEvaluation::RunRotated(double degrees) {
-  return Run([degrees](LabeledPicture picture, size_t) { return Rotate(picture, degrees); });
+  return Run([degrees](const LabeledPicture& picture, size_t) { return Rotate(picture, degrees); });
 }
 
 StatusOr<std::vector<ScoredImage>> DetectorEvaluation::RunCut(int class_id, double fraction) {
