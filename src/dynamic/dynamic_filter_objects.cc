@@ -149,11 +149,12 @@ void DynamicFilter::ExcludePlanes(Work& work) const {
   }
   if (cv::countNonZero(in_box) == 0) return;
   work.in_box = in_box;
-  // Where boxes cover almost everything there is no outside to go on in; people are not flat.
+  // Where boxes cover almost everything there is no outside to go on in.
   const bool outside_shows = cv::countNonZero(in_box) < kMostlyCovered * in_box.total();
-  work.on_plane =
-      FindPlaneBlocks(work.view.depth, rays, outside_shows ? in_box : in_mover, options_.planes,
-                      seed_ + static_cast<uint64_t>(work.frame.id.value()));
+  PlaneOptions options = options_.planes;
+  if (!outside_shows) options.min_share = options.covered_share;
+  work.on_plane = FindPlaneBlocks(work.view.depth, rays, outside_shows ? in_box : in_mover, options,
+                                  seed_ + static_cast<uint64_t>(work.frame.id.value()));
   if (work.background.rows() == 0) work.background = BlockVerdicts(rays.rows(), rays.cols());
   for (int r = 0; r < rays.rows(); ++r) {
     for (int c = 0; c < rays.cols(); ++c) {

@@ -42,9 +42,10 @@ Status DynamicOptions::Check() const {
   DynamicOptions copy = *this;
   copy.Visit(finder);
   if (!finder.found.empty()) return Status::Error(finder.found + " must not be negative");
-  for (const double share : {min_static_probability, tracks.min_iou, tracks.moving_share,
-                             tracks.settled_share, tracks.mover_share, tracks.new_share,
-                             tracks.settled_weight, planes.min_share, mask.min_depth_share}) {
+  for (const double share :
+       {min_static_probability, tracks.min_iou, tracks.moving_share, tracks.settled_share,
+        tracks.mover_share, tracks.new_share, tracks.settled_weight, planes.min_share,
+        planes.covered_share, mask.min_depth_share}) {
     if (share > 1) return Status::Error("dynamic: shares and probabilities are at most 1");
   }
   if (!(paper_flow_px > 0) || paper_window_px < 3)

@@ -76,6 +76,7 @@ struct PlaneOptions {
   int max_planes = 4;
   int hypotheses = 40;
   double min_share = 0.08;
+  double covered_share = 0.2;
   double tolerance_m = 0.012;
   double tolerance_per_m2 = 0.005;
 
@@ -84,6 +85,9 @@ struct PlaneOptions {
     visit("max_planes", max_planes, "planes looked for where there are objects; 0: none");
     visit("hypotheses", hypotheses, "samples for each");
     visit("min_share", min_share, "share of the image outside the boxes that makes a plane");
+    visit("covered_share", covered_share,
+          "the same, of the whole image, where boxes cover most of it: people are not flat, but a "
+          "part of one may be");
     visit("tolerance_m", tolerance_m, "distance of a plane's points from it, m, at depth 0 ...");
     visit("tolerance_per_m2", tolerance_per_m2, "... and its growth with the square of depth, 1/m");
   }
