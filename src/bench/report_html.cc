@@ -2,6 +2,7 @@
 
 #include "bench/base64.h"
 #include "bench/report.h"
+#include "util/markup.h"
 
 namespace msf {
 namespace {
@@ -41,12 +42,12 @@ nav a { margin-right: 14px; }
 std::string Head(const std::string& title) {
   std::string head = kHead;
   const std::string mark = "{title}";
-  return head.replace(head.find(mark), mark.size(), EscapeHtml(title));
+  return head.replace(head.find(mark), mark.size(), EscapeMarkup(title));
 }
 
 std::string List(const std::vector<std::string>& lines, const char* kind) {
   std::string html = fmt::format("<ul class=\"{}\">\n", kind);
-  for (const std::string& line : lines) html += "<li>" + EscapeHtml(line) + "</li>\n";
+  for (const std::string& line : lines) html += "<li>" + EscapeMarkup(line) + "</li>\n";
   return html + "</ul>\n";
 }
 
@@ -54,17 +55,17 @@ std::string List(const std::vector<std::string>& lines, const char* kind) {
 std::string FigureToHtml(const Figure& figure) {
   // The title is in the picture.
   const std::string caption =
-      figure.note.empty() ? "" : "<figcaption>" + EscapeHtml(figure.note) + "</figcaption>";
+      figure.note.empty() ? "" : "<figcaption>" + EscapeMarkup(figure.note) + "</figcaption>";
   return fmt::format(
       "<figure id=\"{}\"><img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\">{}</figure>\n",
-      figure.id, EscapeHtml(figure.title), EncodeBase64(figure.svg), caption);
+      figure.id, EscapeMarkup(figure.title), EncodeBase64(figure.svg), caption);
 }
 
 std::string Navigation(const BenchResults& results) {
   std::string html = "<nav><a href=\"#tables\">Tables</a><a href=\"#figures\">Figures</a>";
   for (const SuiteSequence& sequence : results.suite.sequences) {
     if (!results.plan.FolderOf(sequence.name).empty())
-      html += fmt::format("<a href=\"#sequence-{0}\">{0}</a>", EscapeHtml(sequence.name));
+      html += fmt::format("<a href=\"#sequence-{0}\">{0}</a>", EscapeMarkup(sequence.name));
   }
   return html + "</nav>\n";
 }
@@ -73,7 +74,7 @@ std::string SequenceSections(const BenchResults& results, const std::vector<Figu
   std::string html;
   for (const SuiteSequence& sequence : results.suite.sequences) {
     if (results.plan.FolderOf(sequence.name).empty()) continue;
-    html += fmt::format("<h2 id=\"sequence-{0}\">{0}</h2>\n", EscapeHtml(sequence.name));
+    html += fmt::format("<h2 id=\"sequence-{0}\">{0}</h2>\n", EscapeMarkup(sequence.name));
     for (const Figure& figure : figures) {
       if (figure.section == sequence.name) html += FigureToHtml(figure);
     }
@@ -87,7 +88,7 @@ std::string HtmlReport(const BenchResults& results, const std::vector<Table>& ta
                        const std::vector<Figure>& figures) {
   const ReportFacts facts = GatherFacts(results);
   const std::string title = "msf-slam bench: " + results.suite.name;
-  std::string html = Head(title) + "<h1>" + EscapeHtml(title) + "</h1>\n" + Navigation(results);
+  std::string html = Head(title) + "<h1>" + EscapeMarkup(title) + "</h1>\n" + Navigation(results);
   html += List(facts.about, "about");
   if (!facts.missing.empty())
     html += "<h3>Not run: sequences that are not here</h3>\n" + List(facts.missing, "missing");
@@ -95,7 +96,7 @@ std::string HtmlReport(const BenchResults& results, const std::vector<Table>& ta
     html += "<h3>Did not succeed</h3>\n" + List(facts.problems, "problem");
   html += "<h2 id=\"tables\">Tables</h2>\n";
   for (const Table& table : tables) html += TableToHtml(table);
-  html += "<p class=\"note\">" + EscapeHtml(DescribeAbsentTables(tables)) + "</p>\n";
+  html += "<p class=\"note\">" + EscapeMarkup(DescribeAbsentTables(tables)) + "</p>\n";
   html += "<h2 id=\"figures\">Figures</h2>\n";
   for (const Figure& figure : figures) {
     if (figure.section.empty()) html += FigureToHtml(figure);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "util/markup.h"
+
 namespace msf {
 namespace {
 
@@ -45,42 +47,19 @@ std::string HtmlHead(const Table& table) {
   if (!table.groups.empty()) {
     html += "<tr>";
     for (const auto& [text, count] : table.groups)
-      html += fmt::format("<th colspan=\"{}\" class=\"group\">{}</th>", count, EscapeHtml(text));
+      html += fmt::format("<th colspan=\"{}\" class=\"group\">{}</th>", count, EscapeMarkup(text));
     html += "</tr>\n";
   }
   html += "<tr>";
   for (size_t i = 0; i < table.columns.size(); ++i) {
     html += fmt::format("<th class=\"{}\">{}</th>",
                         i < static_cast<size_t>(table.num_label_columns) ? "label" : "",
-                        EscapeHtml(table.columns[i]));
+                        EscapeMarkup(table.columns[i]));
   }
   return html + "</tr>\n</thead>\n";
 }
 
 }  // namespace
-
-std::string EscapeHtml(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
 
 std::string TableToMarkdown(const Table& table) {
   std::string text = "### " + table.title + "\n\n|";
@@ -105,7 +84,7 @@ std::string TableToMarkdown(const Table& table) {
 
 std::string TableToHtml(const Table& table) {
   std::string html = fmt::format("<h3 id=\"{}\">{}</h3>\n<div class=\"wide\"><table>\n{}<tbody>\n",
-                                 table.id, EscapeHtml(table.title), HtmlHead(table));
+                                 table.id, EscapeMarkup(table.title), HtmlHead(table));
   for (const std::vector<Cell>& row : table.rows) {
     const bool all_published = std::all_of(row.begin(), row.end(), [](const Cell& cell) {
       return cell.published || cell.text.empty();
@@ -115,13 +94,13 @@ std::string TableToHtml(const Table& table) {
       const bool label = i < static_cast<size_t>(table.num_label_columns);
       const char* kind =
           row[i].published ? (label ? "label published" : "published") : (label ? "label" : "");
-      html += fmt::format("<td class=\"{}\">{}</td>", kind, EscapeHtml(TextOf(row[i])));
+      html += fmt::format("<td class=\"{}\">{}</td>", kind, EscapeMarkup(TextOf(row[i])));
     }
     html += "</tr>\n";
   }
   html += "</tbody></table></div>\n";
   return html +
-         (table.note.empty() ? "" : "<p class=\"note\">" + EscapeHtml(table.note) + "</p>\n");
+         (table.note.empty() ? "" : "<p class=\"note\">" + EscapeMarkup(table.note) + "</p>\n");
 }
 
 std::string TableToCsv(const Table& table) {

@@ -37,7 +37,4 @@ std::string TableToHtml(const Table& table);
 // One heading per column; a "-" is an empty cell.
 std::string TableToCsv(const Table& table);
 
-// What HTML reserves.
-std::string EscapeHtml(const std::string& text);
-
 }  // namespace msf

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "util/markup.h"
+
 namespace msf {
 namespace {
 
@@ -12,26 +14,6 @@ std::string Attributes(const Stroke& stroke) {
       fmt::format(R"(stroke="{}" stroke-width="{:g}")", Hex(stroke.color), stroke.width);
   if (*stroke.dashes != '\0') text += fmt::format(R"( stroke-dasharray="{}")", stroke.dashes);
   return text;
-}
-
-std::string Escape(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '&':
-        escaped += "&amp;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
 }
 
 }  // namespace
@@ -93,7 +75,7 @@ void SvgCanvas::Image(const Box& box, const std::string& address) {
   body_ += fmt::format(
       "<image x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" "
       "preserveAspectRatio=\"none\" href=\"{}\"/>\n",
-      box.left, box.top, box.width, box.height, Escape(address));
+      box.left, box.top, box.width, box.height, EscapeMarkup(address));
 }
 
 void SvgCanvas::FillDisc(const Eigen::Vector2d& centre, double radius, Color fill) {
@@ -108,7 +90,7 @@ void SvgCanvas::Text(const Eigen::Vector2d& at, const std::string& text, const T
       "<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"{:g}\" text-anchor=\"{}\" "
       "fill=\"{}\"{}{}>{}</text>\n",
       at.x(), at.y(), style.size, style.anchor, Hex(style.color),
-      style.bold ? " font-weight=\"bold\"" : "", turn, Escape(text));
+      style.bold ? " font-weight=\"bold\"" : "", turn, EscapeMarkup(text));
 }
 
 std::string SvgCanvas::ToString() const {

@@ -6,6 +6,7 @@
 
 #include "util/atomic_file.h"
 #include "util/bounded_queue.h"
+#include "util/markup.h"
 #include "util/options.h"
 
 namespace msf {
@@ -111,6 +112,11 @@ TEST(BoundedQueue, HandsOutEverythingAfterClose) {
   producer.join();
   EXPECT_EQ(expected, 100);
   EXPECT_FALSE(queue.Push(1));
+}
+
+TEST(EscapeMarkup, NothingIsReadAsMarkup) {
+  EXPECT_EQ(EscapeMarkup("a < b && \"c\" > d"), "a &lt; b &amp;&amp; &quot;c&quot; &gt; d");
+  EXPECT_EQ(EscapeMarkup(""), "");
 }
 
 }  // namespace
