@@ -76,6 +76,7 @@ BlockVerdicts Background::Compare(double time_s, const CoarseDepth& depth, const
   if (views.empty()) return verdicts;
   const Rigid3d T_wc = T_cw.Inverse();
   std::vector<Rigid3d> T_past_now;
+  T_past_now.reserve(views.size());
   for (const View* view : views) T_past_now.push_back(view->T_cw * T_wc);
   for (int r = 0; r < verdicts.rows(); ++r) {
     for (int c = 0; c < verdicts.cols(); ++c) {

@@ -139,6 +139,7 @@ cv::Mat1b FindPlaneBlocks(const CoarseDepth& depth, const BlockRays& rays, const
   std::mt19937_64 random(seed);
   const std::vector<Sample> samples = SamplesOutside(depth, rays, in_box);
   std::vector<Eigen::Vector3f> points;
+  points.reserve(samples.size());
   for (const Sample& sample : samples) points.push_back(sample.point);
   for (int k = 0; k < options.max_planes && !points.empty(); ++k) {
     const std::optional<Plane> plane = BestPlane(samples, points, options, random);

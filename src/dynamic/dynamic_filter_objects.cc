@@ -94,6 +94,7 @@ ImageBox DynamicFilter::CarryBox(const ImageBox& box, const PastView& then,
     guess = Centre(track.box) - Centre(*past);
   }
   std::vector<Eigen::Vector2f> guesses;
+  guesses.reserve(points.size());
   for (const Eigen::Vector2f& px : points) guesses.emplace_back(px + guess);
   const std::vector<FlowPoint> flow =
       FollowPoints(then.image, work.view.image, points, guesses, flow_options_);

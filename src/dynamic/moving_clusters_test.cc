@@ -13,8 +13,8 @@ using Clusters = std::vector<std::vector<int>>;
 // Nine points, 20 px apart, whose first is at (x, y).
 void AddGrid(float x, float y, float depth_m, bool moves, std::vector<TestedPoint>& points) {
   for (int i = 0; i < 9; ++i) {
-    const Eigen::Vector2f px(x + 20 * static_cast<float>(i % 3),
-                             y + 20 * static_cast<float>(i / 3));
+    const int column = i % 3, row = i / 3;
+    const Eigen::Vector2f px(x + 20 * static_cast<float>(column), y + 20 * static_cast<float>(row));
     points.push_back({px, depth_m, moves});
   }
 }

@@ -53,6 +53,7 @@ class MapTest : public ::testing::Test {
   }
   std::vector<MapPointId> AddPoints(KeyFrameId first, int count, int from_feature = 0) {
     std::vector<MapPointId> points;
+    points.reserve(count);
     for (int i = 0; i < count; ++i) {
       points.push_back(map_.AddPoint({0.05 * i - 1, 0, 2}, first, from_feature + i));
     }

@@ -15,7 +15,7 @@ class KeyFrameCullingTest : public ::testing::Test {
 
   TestWorld world_{1};
   Map map_ = world_.EmptyMap();
-  const MappingOptions options_;
+  const MappingOptions options_{};
 };
 
 TEST_F(KeyFrameCullingTest, KeyFramesThatShowNothingNewGo) {

@@ -19,7 +19,7 @@ class PointCreationTest : public ::testing::Test {
 
   TestWorld world_{1};
   Map map_ = world_.EmptyMap();
-  const MappingOptions options_;
+  const MappingOptions options_{};
 };
 
 TEST_F(PointCreationTest, PointsLieWhereTheLandmarksAre) {

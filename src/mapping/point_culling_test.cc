@@ -19,7 +19,7 @@ class PointCullingTest : public ::testing::Test {
   TestWorld world_{1};
   Map map_ = world_.EmptyMap();
   RecentPoints young_;
-  const MappingOptions options_;
+  const MappingOptions options_{};
 };
 
 TEST_F(PointCullingTest, PointsThatAreRarelyFoundGo) {

@@ -17,7 +17,7 @@ class RelocalizerTest : public ::testing::Test {
   }
 
   TrackedWorld at_;
-  const RelocalizationOptions options_;
+  const RelocalizationOptions options_{};
 };
 
 TEST_F(RelocalizerTest, TheCameraIsFoundInTheMap) {
