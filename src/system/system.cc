@@ -43,7 +43,7 @@ Status SystemOptions::Check() const {
 class System::Impl {
  public:
   Impl(const SystemOptions& options, const Camera& camera,
-       std::shared_ptr<const Vocabulary> vocabulary, std::unique_ptr<Detector> detector);
+       const std::shared_ptr<const Vocabulary>& vocabulary, std::unique_ptr<Detector> detector);
 
   // The filter of dynamic points; none in mode off.
   Status MakeFilter(const std::vector<std::string>& class_names);
@@ -92,7 +92,8 @@ class System::Impl {
 };
 
 System::Impl::Impl(const SystemOptions& options, const Camera& camera,
-                   std::shared_ptr<const Vocabulary> vocabulary, std::unique_ptr<Detector> detector)
+                   const std::shared_ptr<const Vocabulary>& vocabulary,
+                   std::unique_ptr<Detector> detector)
     : options_(options),
       camera_(std::make_shared<const Camera>(camera)),
       extractor_(options.feature),

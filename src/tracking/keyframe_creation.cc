@@ -8,8 +8,8 @@ namespace {
 constexpr int kMinNewPoints = 100;
 
 std::array<uint8_t, 3> ColorAt(const cv::Mat& image, const Eigen::Vector2f& image_px) {
-  const int x = std::clamp(static_cast<int>(image_px.x() + 0.5f), 0, image.cols - 1);
-  const int y = std::clamp(static_cast<int>(image_px.y() + 0.5f), 0, image.rows - 1);
+  const int x = std::clamp(cvRound(image_px.x()), 0, image.cols - 1);
+  const int y = std::clamp(cvRound(image_px.y()), 0, image.rows - 1);
   const uint8_t* pixel = image.ptr<uint8_t>(y) + x * image.channels();
   if (image.channels() == 1) return {pixel[0], pixel[0], pixel[0]};
   return {pixel[0], pixel[1], pixel[2]};

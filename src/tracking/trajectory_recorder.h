@@ -28,8 +28,8 @@ class TrajectoryRecorder {
  private:
   struct Entry {
     FrameId frame_id;
-    double time_s;
-    TrackingState state;
+    double time_s = 0;
+    TrackingState state = TrackingState::kInitialising;
     KeyFrameId reference;  // invalid without a pose
     Rigid3d T_c_reference;
   };
