@@ -264,8 +264,11 @@ void DynamicFilter::TestSlowMotions(Work& work) const {
 bool DynamicFilter::IsCredible(const ObjectTrack& track) const {
   const double most = options_.mask.max_image_share;
   if (track.mask.area > most * static_cast<double>(track.mask.cells.total())) return false;
-  const bool whole_image = track.box.area() > most * camera_.width * camera_.height;
-  return !whole_image || track.evidence.SpeaksForMotion();
+  return !CoversImage(track) || track.evidence.SpeaksForMotion();
+}
+
+bool DynamicFilter::CoversImage(const ObjectTrack& track) const {
+  return track.box.area() > options_.mask.max_image_share * camera_.width * camera_.height;
 }
 
 void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {

@@ -99,6 +99,7 @@ class DynamicFilter {
   void FindIntruders(const Work& work);
   void GatherEvidence(const Work& work);
   bool IsCredible(const ObjectTrack& track) const;
+  bool CoversImage(const ObjectTrack& track) const;
   void LabelPoints(const Work& work, DynamicResult& result) const;
   void ReadmitPoints(const Work& work, DynamicResult& result) const;
   void Describe(const Work& work, DynamicResult& result) const;

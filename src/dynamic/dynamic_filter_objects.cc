@@ -142,7 +142,7 @@ void DynamicFilter::ExcludePlanes(Work& work) const {
   const BlockRays& rays = background_.rays();
   cv::Mat1b in_box(rays.rows(), rays.cols(), static_cast<uint8_t>(0)), in_mover = in_box.clone();
   for (const ObjectTrack& track : tracks_.tracks()) {
-    if (!IsEstablished(track)) continue;
+    if (!IsEstablished(track) || CoversImage(track)) continue;
     const auto margin = static_cast<float>(MaskOptionsFor(track).box_margin);
     const cv::Rect blocks = BlocksAround(track.box, margin);
     cv::rectangle(in_box, blocks, 255, cv::FILLED);
