@@ -136,6 +136,26 @@ TEST_F(Detected, AMoverElsewhereIsAnother) {
   EXPECT_EQ(tracks_.tracks().size(), 2u);
 }
 
+TEST_F(Detected, MoversThatCoverEachOtherAreOne) {
+  const auto add = [&](const ImageBox& box, int area, float depth_m) {
+    ObjectMask mask = MaskOf(area, depth_m);
+    mask.box = box;
+    tracks_.TakeMover(box, std::move(mask), 1);
+  };
+  add(kHere, 100, 2);
+  add(kThere, 150, 2);
+  tracks_.tracks()[1].mask.box = kHere;  // both have grown over the same thing
+  tracks_.tracks()[1].confirmations = 3;
+  const int older = tracks_.tracks()[0].id;
+  tracks_.MergeMovers();
+  EXPECT_EQ(Only().id, older);
+  EXPECT_EQ(Only().mask.area, 150);
+  EXPECT_EQ(Only().confirmations, 3);
+  add(kHere, 150, 3);
+  tracks_.MergeMovers();
+  EXPECT_EQ(tracks_.tracks().size(), 2u) << "one behind the other";
+}
+
 TEST_F(Detected, AMoverMayTurnOutToBeAPerson) {
   tracks_.TakeMover(kHere, MaskOf(100, 2), 1);
   const int id = Only().id;
