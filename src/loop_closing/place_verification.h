@@ -64,10 +64,10 @@ class PlaceVerifier {
  private:
   using Matches = std::vector<std::pair<int, MapPointId>>;
   struct WordMatch {
-    int feature;        // of the current keyframe
-    MapPointId point;   // of the matched window
-    double sigma2_px2;  // of the matched side's feature
-    int distance;
+    int feature = -1;       // of the current keyframe
+    MapPointId point;       // of the matched window
+    double sigma2_px2 = 0;  // of the matched side's feature
+    int distance = 0;
   };
   struct Search {
     double radius_px;

@@ -76,6 +76,7 @@ std::vector<PointMatch> MatchLastFrame(const TrackingContext& context, const Map
     for (ProjectionQuery& query : search.queries) query.radius_px *= 2;
   }
   std::vector<PointMatch> matches;
+  matches.reserve(pairs.size());
   for (const auto& [last_feature, feature] : pairs) {
     matches.push_back(MakePointMatch(*search.points[query_of[last_feature]], features, feature));
   }

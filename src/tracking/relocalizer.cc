@@ -14,6 +14,7 @@ std::optional<Rigid3d> FindConsensus(const TrackingContext& context,
                                      const FrameFeatures& features, uint64_t seed,
                                      std::vector<PointMatch>& matches) {
   std::vector<PnpMatch> pnp_matches;
+  pnp_matches.reserve(matches.size());
   for (const PointMatch& match : matches) {
     pnp_matches.push_back({match.p_w, features.uv_px[match.feature].cast<double>(),
                            context.levels.sigma2(features.level[match.feature])});

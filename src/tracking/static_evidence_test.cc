@@ -46,6 +46,7 @@ TEST_F(StaticEvidenceTest, MatchedPointsTakeTheProbabilityOfTheirFeature) {
   EXPECT_EQ(evidence.front().static_probability, 0.35f);
   // Each point once, although the removed features would show it, too.
   std::vector<MapPointId> ids;
+  ids.reserve(evidence.size());
   for (const StaticEvidence& one : evidence) ids.push_back(one.point);
   std::sort(ids.begin(), ids.end());
   EXPECT_EQ(std::unique(ids.begin(), ids.end()), ids.end());

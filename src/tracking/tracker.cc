@@ -208,7 +208,7 @@ void Tracker::TellMap(const std::vector<MapPointId>& expected, bool tracked) {
   }
 }
 
-void Tracker::TakeMatches(std::vector<PointMatch> matches) {
+void Tracker::TakeMatches(const std::vector<PointMatch>& matches) {
   frame_.points.assign(frame_.features->size(), MapPointId());
   for (const PointMatch& match : matches) frame_.points[match.feature] = match.point;
 }

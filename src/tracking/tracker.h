@@ -57,7 +57,7 @@ class Tracker {
   void RememberFrame(bool tracked, TrackingResult& result);
 
   const BagOfWords& FrameWords();
-  void TakeMatches(std::vector<PointMatch> matches);
+  void TakeMatches(const std::vector<PointMatch>& matches);
   // The last frame's pose in the map as it is now, after whatever corrections came since.
   void RefreshLastFrame();
 
