@@ -51,7 +51,8 @@ KeyFrameId InsertKeyFrame(const TrackingContext& context, Frame& frame, Map& map
   for (const int i : ByDepth(features)) {
     if (features.depth_m[i] > context.CloseDepth() && handled >= kMinNewPoints) break;
     ++handled;
-    if (frame.points[i].valid() || features.static_weight[i] < context.options.min_static_weight)
+    if (frame.points[i].valid() ||
+        features.static_weight[i] < context.options.min_static_probability)
       continue;
     const Eigen::Vector3d p_w = T_wc * features.PointInCamera(i, context.camera);
     frame.points[i] = map.AddPoint(p_w, id, i);
@@ -75,7 +76,7 @@ KeyFrameEvidence GatherEvidence(const TrackingContext& context, const Map& map,
   const FrameFeatures& features = *frame.features;
   for (int i = 0; i < features.size(); ++i) {
     if (!features.HasDepth(i) || features.depth_m[i] >= context.CloseDepth()) continue;
-    if (features.static_weight[i] < context.options.min_static_weight) continue;
+    if (features.static_weight[i] < context.options.min_static_probability) continue;
     (frame.points[i].valid() ? evidence.tracked_close : evidence.untracked_close) += 1;
   }
   return evidence;

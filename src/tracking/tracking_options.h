@@ -51,7 +51,7 @@ struct TrackingOptions {
   int min_local_inliers_relocalized = 50;
   double recently_lost_s = 3;
   int min_keyframes_to_keep_map = 10;
-  double min_static_weight = 0.3;
+  double min_static_probability = 0.3;
   KeyFramePolicyOptions keyframe;
   PoseOptimizerOptions pose;
 
@@ -90,7 +90,7 @@ struct TrackingOptions {
           "relocalisation is tried this long before a new map starts, s");
     visit("min_keyframes_to_keep_map", min_keyframes_to_keep_map,
           "a smaller map is forgotten when lost");
-    visit("min_static_weight", min_static_weight,
+    visit("min_static_probability", min_static_probability,
           "features less likely static never become map points");
     visit("keyframe", keyframe, "");
     visit("pose", pose, "");

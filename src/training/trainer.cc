@@ -187,16 +187,26 @@ HeadOutputs Trainer::ForwardForTraining(const Batch& batch, torch::Tensor& dista
   network_.RunNodes(frozen, static_cast<int>(values.size()), values);
   HeadOutputs heads = network_.HeadsOf(values);
   distance = torch::zeros({});
-  if (teacher_ && options_.imitation > 0.0) {
-    // The teacher has never seen rotated pictures: it is shown them upright.
-    const torch::Tensor angles = batch.angles * (batch.angles.abs() > kUpright);
-    const HeadOutputs wanted = [&] {
-      const torch::NoGradGuard no_grad;
-      return teacher_->Forward(TurnMaps(batch.images, angles, kGrey));
-    }();
-    distance = ClassDistance(heads, wanted, angles);
-  }
+  if (teacher_ && options_.imitation > 0.0) distance = Imitation(heads, batch);
   return heads;
+}
+
+torch::Tensor Trainer::Imitation(const HeadOutputs& heads, const Batch& batch) const {
+  const torch::Tensor turned = batch.angles.abs() > kUpright;
+  const torch::Tensor counted =
+      options_.imitate_turned ? torch::arange(turned.size(0)) : torch::nonzero(~turned).flatten();
+  if (counted.numel() == 0) return torch::zeros({});
+  // The teacher has never seen rotated pictures: it is shown them upright.
+  const torch::Tensor angles = (batch.angles * turned).index_select(0, counted);
+  const torch::Tensor images = batch.images.index_select(0, counted);
+  const HeadOutputs wanted = [&] {
+    const torch::NoGradGuard no_grad;
+    return teacher_->Forward(options_.imitate_turned ? TurnMaps(images, angles, kGrey) : images);
+  }();
+  HeadOutputs given;
+  for (const torch::Tensor& map : heads.classes)
+    given.classes.push_back(map.index_select(0, counted));
+  return ClassDistance(given, wanted, angles);
 }
 
 double Trainer::TrainStep(const Batch& batch, EpochRecord& record) {

@@ -31,6 +31,7 @@ struct TrainOptions {
   double distill_rate = 1e-3;
   double new_rate = 1.0;
   double imitation = 2.0;
+  bool imitate_turned = false;
   double average_decay = 0.998;
   double average_ramp = 200.0;
   int validation_images = 100;
@@ -62,8 +63,9 @@ struct TrainOptions {
           "new layers learn this many times as fast as those with starting weights");
     visit(
         "imitation", imitation,
-        "weight of the distance to the class logits of the network that gave the starting weights, "
-        "which sees rotated pictures upright");
+        "weight of the distance to the class logits of the network that gave the starting weights");
+    visit("imitate_turned", imitate_turned,
+          "that distance counts on rotated pictures, too, which that network sees upright");
     visit("average_decay", average_decay,
           "decay of the moving average of weights that is kept in the end");
     visit("average_ramp", average_ramp, "updates over which that decay rises");
@@ -134,6 +136,8 @@ class Trainer {
   EpochSampler Sampler(int epoch, double mosaic) const;
   // Outputs for a batch, gradients recorded, and the distance to the teacher's (0 without one).
   HeadOutputs ForwardForTraining(const Batch& batch, torch::Tensor& distance);
+  // How far the class logits are from the teacher's, on the pictures that count for it.
+  torch::Tensor Imitation(const HeadOutputs& heads, const Batch& batch) const;
   std::set<std::string> TrainedParameters() const;
   // The blocks without starting weights: new convolutions with their norms.
   std::set<std::string> NewParameters() const;

@@ -5,6 +5,8 @@
 
 #include <numbers>
 
+#include "training/distillation.h"
+
 namespace msf {
 namespace {
 
@@ -40,6 +42,15 @@ TEST(Turning, CornersComeFromOutside) {
   EXPECT_NEAR(TurnMaps(torch::zeros({1, 1, 8, 8}), angle, 0.5)[0][0][0][0].item<double>(), 0.5,
               1e-4);
   EXPECT_EQ(TurnedInside(8, torch::zeros({1})).sum().item<double>(), 64.0);
+}
+
+// What a teacher says of the upright picture, turned, is what a turned picture should give.
+TEST(Turning, ClassLogitsOfATurnedPictureAreComparedWithTurnedOnes) {
+  const torch::Tensor angle = torch::full({1}, kQuarter);
+  const HeadOutputs upright{{}, {Ramp()}}, turned{{}, {TurnMaps(Ramp(), -angle, 0.0)}};
+  EXPECT_NEAR(ClassDistance(turned, upright, angle).item<double>(), 0.0, 1e-6);
+  EXPECT_GT(ClassDistance(upright, upright, angle).item<double>(), 0.1);
+  EXPECT_NEAR(ClassDistance(upright, upright, torch::zeros({1})).item<double>(), 0.0, 1e-6);
 }
 
 }  // namespace
