@@ -29,7 +29,8 @@ torch::Tensor ScoreWeightedError(const torch::Tensor& given, const torch::Tensor
   const torch::Tensor target = wanted.to(torch::kFloat);
   const torch::Tensor weight = (target.sigmoid() + kBackgroundWeight) * counted;
   const torch::Tensor error = (given.to(torch::kFloat) - target).square() * weight;
-  return error.sum() / (weight.sum() * (target.var() + 1e-3));
+  // Small maps may have no cell that counts.
+  return error.sum() / ((weight.sum() + 1e-6) * (target.var() + 1e-3));
 }
 
 // A value of the student's node `index`, if it is the output of a layer, is the teacher's output of

@@ -113,6 +113,28 @@ TEST(TrainerTest, FrozenLayersKeepTheirWeights) {
                    .allclose(start.parameters().at("model.3.conv.weight"), 1e-6, 1e-7));
 }
 
+// All pictures are turned by a quarter: whether they are held to the teacher is the option's
+// matter.
+TEST(TrainerTest, TurnedPicturesImitateTheTeacherWhereWanted) {
+  TrainOptions options = TinyTraining();
+  options.epochs = 1;
+  options.validation_images = 0;
+  Trainer first = MakeTrainer(options, -1);
+  ASSERT_TRUE(first.Run(FreshFolder("teacher")).ok());
+  options.augmentation.rotate_upright = 0.0;
+  options.augmentation.rotate_quarter = 1.0;
+  for (const bool wanted : {false, true}) {
+    options.imitate_turned = wanted;
+    Trainer second = MakeTrainer(options, -1);
+    Status status = second.Initialize(first.weights());
+    ASSERT_TRUE(status.ok()) << status.message();
+    status = second.StartFrom(first.weights());
+    ASSERT_TRUE(status.ok()) << status.message();
+    ASSERT_TRUE(second.Run(FreshFolder("student")).ok());
+    EXPECT_EQ(second.records()[0].imitation_loss > 0.0, wanted);
+  }
+}
+
 TEST(TrainOptionsTest, NonsenseIsRefused) {
   TrainOptions options;
   EXPECT_TRUE(options.Check().ok());
