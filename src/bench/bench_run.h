@@ -48,7 +48,8 @@ void RunTasks(const std::filesystem::path& out, const std::vector<Task>& tasks, 
 // What every task came to; those that left no result are "lost".
 std::vector<TaskResult> CollectResults(const std::filesystem::path& out, const Plan& plan);
 
-// Writes results.json (what a deterministic run repeats to the byte) and timing.json (the rest).
+// Writes results.json (what runs found; of deterministic runs equal to the byte) and timing.json
+// (what they cost).
 Status WriteResults(const std::filesystem::path& out, const BenchResults& results);
 
 // "walking_xyz/full/0: ok, ATE 0.0123 m, coverage 100.0 %"
