@@ -77,14 +77,10 @@ DynamicResult DynamicFilter::Classify(const RgbdFrame& frame, const FrameFeature
   if (options_.mode != "boxes") work.view.image = FlowImage(frame.color, flow_options_);
   if (detections) {
     result.detection_age = static_cast<int>(frame.id.value() - detections->frame.value());
-    if (options_.mode == "full") {
-      TakeDetections(*detections, work);
-    } else {
-      work.detections = Sane(detections->objects, camera_);
-    }
+    if (options_.mode != "full") work.detections = Sane(detections->objects, camera_);
   }
   if (options_.mode == "full") {
-    ClassifyByMotion(work, T_last_now_predicted, result);
+    ClassifyByMotion(work, detections, T_last_now_predicted, result);
   } else {
     DropInBoxes(work, result);
     if (options_.mode == "paper") DropByRawFlow(work, result);
@@ -127,8 +123,8 @@ void DynamicFilter::DropByRawFlow(const Work& work, DynamicResult& result) const
   }
 }
 
-void DynamicFilter::ClassifyByMotion(Work& work, const Rigid3d& T_last_now_predicted,
-                                     DynamicResult& result) {
+void DynamicFilter::ClassifyByMotion(Work& work, const Detections* detections,
+                                     const Rigid3d& T_last_now_predicted, DynamicResult& result) {
   FollowCamera(T_last_now_predicted, work, result);
   T_cw_expected_.reset();
   if (T_cw_last_ && result.camera_motion_reliable && options_.compensate_camera_motion) {
@@ -138,9 +134,7 @@ void DynamicFilter::ClassifyByMotion(Work& work, const Rigid3d& T_last_now_predi
   }
   TestMotions(work);
   MoveTracks(work);
-  if (work.has_detections) {
-    tracks_.TakeDetections(work.detections, work.frame.time_s);
-  }
+  if (detections) TakeDetections(*detections, work);
   ExcludePlanes(work);
   GrowMasks(work);
   if (options_.unknown_movers && result.camera_motion_reliable) {
@@ -160,9 +154,9 @@ void DynamicFilter::ClassifyByMotion(Work& work, const Rigid3d& T_last_now_predi
 void DynamicFilter::TakeDetections(const Detections& detections, Work& work) {
   if (last_detections_.valid() && detections.frame <= last_detections_) return;
   last_detections_ = detections.frame;
-  work.has_detections = true;
   work.detections = detections.frame == work.frame.id ? Sane(detections.objects, camera_)
                                                       : CarryToNow(detections, work);
+  tracks_.TakeDetections(work.detections, work.frame.time_s);
 }
 
 std::vector<Detection> DynamicFilter::CarryToNow(const Detections& detections,
@@ -173,7 +167,7 @@ std::vector<Detection> DynamicFilter::CarryToNow(const Detections& detections,
   });
   if (then == past_.end()) return carried;  // too old to be placed
   for (Detection detection : Sane(detections.objects, camera_)) {
-    if (!tracks_.roles().KindOf(detection.class_id)) continue;
+    if (!tracks_.MayTake(detection, then->frame)) continue;
     detection.box = CarryBox(detection.box, *then, work);
     carried.push_back(detection);
   }

@@ -78,16 +78,19 @@ class DynamicFilter {
     std::vector<PointMotion> motion;       // against the last image
     std::vector<PointMotion> slow_motion;  // against an older one
     std::vector<Detection> detections;     // in place for this frame
-    bool has_detections = false;
   };
 
   void DropInBoxes(const Work& work, DynamicResult& result) const;
   void DropByRawFlow(const Work& work, DynamicResult& result) const;
-  void ClassifyByMotion(Work& work, const Rigid3d& T_last_now_predicted, DynamicResult& result);
+  void ClassifyByMotion(Work& work, const Detections* detections,
+                        const Rigid3d& T_last_now_predicted, DynamicResult& result);
 
   void TakeDetections(const Detections& detections, Work& work);
   std::vector<Detection> CarryToNow(const Detections& detections, const Work& work) const;
   ImageBox CarryBox(const ImageBox& box, const PastView& then, const Work& work) const;
+  std::vector<Eigen::Vector2f> ShiftsSince(const PastView& then, const ImageBox& box,
+                                           const ObjectMask& mask, const Eigen::Vector2f& guess,
+                                           const Work& work) const;
   void FollowCamera(const Rigid3d& T_last_now_predicted, Work& work, DynamicResult& result);
   void TestMotions(Work& work) const;
   void TestSlowMotions(Work& work) const;

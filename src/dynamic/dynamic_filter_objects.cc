@@ -1,5 +1,6 @@
 // The part of DynamicFilter that follows and finds objects.
 #include <algorithm>
+#include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -72,17 +73,8 @@ Eigen::Vector2f CameraShift(const Camera& camera, const Rigid3d& T_now_past,
 // Follows points on the object from the image of the detection to this one.
 ImageBox DynamicFilter::CarryBox(const ImageBox& box, const PastView& then,
                                  const Work& work) const {
-  constexpr int kStep = 3;  // cells
   constexpr size_t kEnough = 6;
   const ObjectMask mask = MaskInBox(then.depth, {}, box, false, std::nullopt, options_.mask);
-  std::vector<Eigen::Vector2f> points;
-  for (int r = 0; r < mask.cells.rows; r += kStep) {
-    for (int c = 0; c < mask.cells.cols; c += kStep) {
-      const Eigen::Vector2f px((static_cast<float>(c) + 0.5f) * CoarseDepth::kCellSize,
-                               (static_cast<float>(r) + 0.5f) * CoarseDepth::kCellSize);
-      if (mask.cells(r, c) != 0 && box.Contains(px.x(), px.y())) points.push_back(px);
-    }
-  }
   // Where a track was there then, it says where to look.
   Eigen::Vector2f guess =
       CameraShift(camera_, then.T_past_now.Inverse(), Centre(box), mask.depth_m);
@@ -93,16 +85,47 @@ ImageBox DynamicFilter::CarryBox(const ImageBox& box, const PastView& then,
     best_iou = IntersectionOverUnion(*past, box);
     guess = Centre(track.box) - Centre(*past);
   }
-  std::vector<Eigen::Vector2f> guesses;
-  guesses.reserve(points.size());
-  for (const Eigen::Vector2f& px : points) guesses.emplace_back(px + guess);
+  return Moved(box, MedianOf(ShiftsSince(then, box, mask, guess, work), kEnough).value_or(guess));
+}
+
+// How far points on the object have moved: features where they have been followed already, else a
+// grid.
+std::vector<Eigen::Vector2f> DynamicFilter::ShiftsSince(const PastView& then, const ImageBox& box,
+                                                        const ObjectMask& mask,
+                                                        const Eigen::Vector2f& guess,
+                                                        const Work& work) const {
+  constexpr size_t kEnoughFeatures = 12;
+  constexpr int kMostPoints = 64;
+  const auto covers = [&](const Eigen::Vector2f& px) {
+    return box.Contains(px.x(), px.y()) && mask.Covers(px);
+  };
+  std::vector<Eigen::Vector2f> shifts;
+  if (&then == &past_.back()) {
+    for (const int i : work.all) {
+      if (work.flow[i].found && covers(work.flow[i].image_px))
+        shifts.emplace_back(work.features.image_px[i] - work.flow[i].image_px);
+    }
+    if (shifts.size() >= kEnoughFeatures) return shifts;
+    shifts.clear();
+  }
+  const int step = std::max(
+      3, static_cast<int>(std::sqrt(static_cast<double>(mask.area) / kMostPoints)));  // cells
+  std::vector<Eigen::Vector2f> points, guesses;
+  for (int r = 0; r < mask.cells.rows; r += step) {
+    for (int c = 0; c < mask.cells.cols; c += step) {
+      const Eigen::Vector2f px((static_cast<float>(c) + 0.5f) * CoarseDepth::kCellSize,
+                               (static_cast<float>(r) + 0.5f) * CoarseDepth::kCellSize);
+      if (!covers(px)) continue;
+      points.push_back(px);
+      guesses.emplace_back(px + guess);
+    }
+  }
   const std::vector<FlowPoint> flow =
       FollowPoints(then.image, work.view.image, points, guesses, flow_options_);
-  std::vector<Eigen::Vector2f> shifts;
   for (size_t i = 0; i < points.size(); ++i) {
     if (flow[i].found) shifts.emplace_back(flow[i].image_px - points[i]);
   }
-  return Moved(box, MedianOf(shifts, kEnough).value_or(guess));
+  return shifts;
 }
 
 void DynamicFilter::MoveTracks(const Work& work) {

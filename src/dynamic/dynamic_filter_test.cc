@@ -243,6 +243,20 @@ TEST(DynamicFilterFull, LateDetectionsAreCarriedToThePresent) {
   EXPECT_NEAR(person->box.x0, static_cast<float>(px.x), 8);
 }
 
+TEST(DynamicFilterFull, DetectionsOfTheImageBeforeAreCarriedByWhatWasFollowedAnyway) {
+  const auto filter = MakeFilter(Mode("full"));
+  Classify(*filter, TexturedFrame(0, 0, 0, kThing_px));
+  for (int i = 1; i <= 4; ++i) {
+    const cv::Rect before = Shifted(kThing_px, 12 * (i - 1)), px = Shifted(kThing_px, 12 * i);
+    const Detections found = Found(i - 1, {{kPerson, 0.9f, BoxOf(before)}});
+    const Seen seen = Classify(*filter, TexturedFrame(i, 0.1 * i, 0, px), &found);
+    EXPECT_EQ(seen.ShareOf(PointReason::kObject, BoxOf(px)), 1) << i;
+    const DynamicObject* person = FindPerson(seen.result);
+    ASSERT_NE(person, nullptr);
+    EXPECT_NEAR(person->box.x0, static_cast<float>(px.x), 8);
+  }
+}
+
 TEST(DynamicFilterFull, AMoverOfUnknownClassIsFound) {
   const auto filter = MakeFilter(Mode("full"));
   Classify(*filter, TexturedFrame(0, 0, 0, kThing_px));

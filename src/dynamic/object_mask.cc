@@ -103,15 +103,17 @@ cv::Mat1b Flood(const CoarseDepth& depth, const BlockVerdicts& background,
 // Drops pieces much smaller than the largest.
 void KeepLargePieces(cv::Mat1b& mask) {
   constexpr int kSmallestShare = 5;  // of the largest: one fifth
+  cv::Mat1b part = mask(cv::boundingRect(mask));
+  if (part.empty()) return;
   cv::Mat labels, stats, centres;
-  const int count = cv::connectedComponentsWithStats(mask, labels, stats, centres, 8, CV_32S);
+  const int count = cv::connectedComponentsWithStats(part, labels, stats, centres, 8, CV_32S);
   int largest = 0;
   for (int i = 1; i < count; ++i) largest = std::max(largest, stats.at<int>(i, cv::CC_STAT_AREA));
-  for (int r = 0; r < mask.rows; ++r) {
-    for (int c = 0; c < mask.cols; ++c) {
-      if (mask(r, c) != 0 &&
+  for (int r = 0; r < part.rows; ++r) {
+    for (int c = 0; c < part.cols; ++c) {
+      if (part(r, c) != 0 &&
           stats.at<int>(labels.at<int>(r, c), cv::CC_STAT_AREA) * kSmallestShare < largest)
-        mask(r, c) = 0;
+        part(r, c) = 0;
     }
   }
 }

@@ -97,6 +97,16 @@ bool ObjectTracks::IsEcho(const Detection& detection, const std::vector<uint8_t>
   return false;
 }
 
+bool ObjectTracks::MayTake(const Detection& detection, FrameId frame) const {
+  const std::optional<ObjectKind> kind = roles_.KindOf(detection.class_id);
+  if (!kind || detection.score < options_.continue_score) return false;
+  if (detection.score >= StartScore(*kind)) return true;
+  return std::any_of(tracks_.begin(), tracks_.end(), [&](const ObjectTrack& track) {
+    const ImageBox box = track.BoxAt(frame).value_or(track.box);
+    return track.kind == *kind && IntersectionOverUnion(detection.box, box) > 0;
+  });
+}
+
 void ObjectTracks::TakeDetections(const std::vector<Detection>& detections, double time_s) {
   std::vector<uint8_t> taken(tracks_.size(), 0);
   for (const Detection& detection : detections) {

@@ -64,6 +64,8 @@ class ObjectTracks {
   // Boxes in pixels of the present image; best first. A box continues the track of its kind that it
   // overlaps most; what is left starts new tracks where the score allows it.
   void TakeDetections(const std::vector<Detection>& detections, double time_s);
+  // Whether TakeDetections() could use one that belongs to the image `frame`.
+  bool MayTake(const Detection& detection, FrameId frame) const;
   // A cluster of moving points outside all masks: confirms the mover there or starts one.
   void TakeMover(const ImageBox& box, ObjectMask mask, double time_s);
   // Movers of unknown class that cover each other at the same depth are one, the older one.

@@ -77,6 +77,21 @@ TEST_F(Detected, AWeakDetectionContinuesOnlyWhatLooksTheSame) {
   EXPECT_EQ(Only().confirmations, 2);
 }
 
+TEST_F(Detected, AWeakDetectionIsOfUseNearATrackOfItsKindOnly) {
+  const FrameId then(7);
+  EXPECT_FALSE(tracks_.MayTake({kPerson, 0.12f, kHere}, then));
+  EXPECT_TRUE(tracks_.MayTake({kPerson, 0.3f, kHere}, then)) << "it can start a track";
+  EXPECT_FALSE(tracks_.MayTake({kLamp, 0.9f, kHere}, then)) << "it never moves";
+  tracks_.TakeDetections({{kPerson, 0.9f, kHere}}, 1);
+  EXPECT_TRUE(tracks_.MayTake({kPerson, 0.12f, {180, 100, 280, 300}}, then));
+  EXPECT_FALSE(tracks_.MayTake({kPerson, 0.09f, kHere}, then));
+  EXPECT_FALSE(tracks_.MayTake({kChair, 0.12f, kHere}, then));
+  EXPECT_FALSE(tracks_.MayTake({kPerson, 0.12f, kThere}, then));
+  tracks_.RememberBoxes(then, 10);
+  tracks_.tracks()[0].box = kThere;
+  EXPECT_TRUE(tracks_.MayTake({kPerson, 0.12f, kHere}, then)) << "where the track was then";
+}
+
 TEST_F(Detected, APersonCutByTheBorderIsTheSamePerson) {
   tracks_.TakeDetections({{kPerson, 0.9f, kHere}}, 1);
   tracks_.TakeDetections({{kPerson, 0.9f, {100, 260, 200, 300}}}, 2);  // a fifth of it
