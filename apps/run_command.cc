@@ -163,9 +163,8 @@ Recording RunSession::TrackAll(Clock::time_point start) {
 }
 
 FrameRecord RunSession::TrackOne(const StatusOr<RgbdFramePtr>& frame, Recording& recording) {
-  const Status status = frame.status();
   StatusOr<TrackingResult> result =
-      status.ok() ? system_->Track(*frame) : StatusOr<TrackingResult>(status);
+      frame.ok() ? system_->Track(*frame) : StatusOr<TrackingResult>(frame.status());
   if (!result.ok()) {
     FrameRecord missing;
     missing.state = "missing";

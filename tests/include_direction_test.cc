@@ -1,5 +1,6 @@
 // Whether the includes of src/ agree with the layers (src/CMakeLists.txt) and with the rooms'
 // DEPENDS (src/ROOM/CMakeLists.txt).
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -91,9 +92,9 @@ std::vector<std::string> FindBadDepends(const Rooms& rooms) {
     if (room.layer < 0) bad.push_back(name + " is in no layer");
     for (const std::string& other : room.depends) {
       if (!rooms.contains(other))
-        bad.push_back(name + " depends on " + other + ", which is no room");
+        bad.push_back(fmt::format("{} depends on {}, which is no room", name, other));
       else if (!MayDependOn(room, rooms.at(other)))
-        bad.push_back(name + " must not depend on " + other);
+        bad.push_back(fmt::format("{} must not depend on {}", name, other));
     }
     if (Below(rooms, name).contains(name)) bad.push_back(name + " depends on itself");
   }

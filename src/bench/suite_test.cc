@@ -18,7 +18,7 @@ constexpr char kSmall[] =
 TEST(Suite, ThoseThatShipMakeSense) {
   const std::vector<std::string> names = SuiteNames();
   for (const char* name : {"tum_dynamic", "tum_static", "bonn_dynamic", "composited", "simulated",
-                           "threshold", "ablation", "runtime", "detector"}) {
+                           "threshold", "ablation", "core_ablation", "runtime", "detector"}) {
     EXPECT_THAT(names, Contains(name));
     const StatusOr<Suite> suite = LoadSuite(name);
     ASSERT_TRUE(suite.ok()) << suite.message();

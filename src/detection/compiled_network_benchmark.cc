@@ -32,7 +32,7 @@ void BM_Network(benchmark::State& state) {
                          static_cast<NetworkPrecision>(state.range(1))};
   if (options.precision == NetworkPrecision::kInt8) AddCrudeRanges(graph, options);
   auto network = CompiledNetwork::Compile(graph, options).value();
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     if (!network->Run().ok()) state.SkipWithError("run failed");
   }
   state.counters["MB"] = static_cast<double>(network->activation_bytes()) * 1e-6;
@@ -48,7 +48,7 @@ void BM_Compile(benchmark::State& state) {
   Graph graph = ParseOnnx(bytes, "benchmark").value();
   CompileOptions options{320, 416, static_cast<NetworkPrecision>(state.range(0))};
   if (options.precision == NetworkPrecision::kInt8) AddCrudeRanges(graph, options);
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     benchmark::DoNotOptimize(ParseOnnx(bytes, "benchmark").value());
     CompiledNetwork::Compile(graph, options).value();
   }

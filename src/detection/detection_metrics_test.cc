@@ -66,6 +66,7 @@ TEST(ComputeMetrics, TheStrongestOfTwoOnOneObjectIsRight) {
 TEST(ComputeMetrics, OperatingPointMaximisesF1) {
   // Right down to 0.6, then wrong ones only: the best confidence lies between 0.3 and 0.6.
   std::vector<ScoredImage> images;
+  images.reserve(10);
   for (int i = 0; i < 4; ++i)
     images.push_back({{{0, kA}}, {Found(0.6f + 0.1f * static_cast<float>(i), kA)}});
   for (int i = 0; i < 6; ++i)

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path Write(const std::string& name, const std::string& content) {
-  const fs::path file = fs::path(testing::TempDir()) / name;
+  fs::path file = fs::path(testing::TempDir()) / name;
   std::ofstream(file, std::ios::binary) << content;
   return file;
 }

@@ -126,8 +126,9 @@ void HeadDecoder::DecodeScale(const RawScale& scale, const std::vector<NetworkOu
     ForEachClass(Column(classes, cell), 0, static_cast<size_t>(num_classes_), least_logit,
                  every_class, [&](size_t k, float logit) {
                    const Column sides(boxes, cell);
-                   const float x = static_cast<float>(cell % width) + 0.5f,
-                               y = static_cast<float>(cell / width) + 0.5f;
+                   const auto column = cell % width, row = cell / width;
+                   const float x = static_cast<float>(column) + 0.5f,
+                               y = static_cast<float>(row) + 0.5f;
                    const ImageBox box{(x - Expectation(sides, 0)) * scale.stride,
                                       (y - Expectation(sides, kBins)) * scale.stride,
                                       (x + Expectation(sides, 2 * kBins)) * scale.stride,

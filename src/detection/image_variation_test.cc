@@ -58,7 +58,7 @@ TEST(CutObject, EverySideCutsTheWantedPart) {
        {ImageSide::kLeft, ImageSide::kTop, ImageSide::kRight, ImageSide::kBottom}) {
     const LabeledPicture cut = CutObject(picture, 0, 0.5, side);
     ASSERT_EQ(cut.objects.size(), 1u);
-    EXPECT_NEAR(cut.objects[0].box.area(), 20 * 16 / 2, 0.01);
+    EXPECT_NEAR(cut.objects[0].box.area(), 20 * 8, 0.01);
     const cv::Rect white = WhiteArea(cut.pixels);
     EXPECT_EQ(white.x, cut.objects[0].box.x0);
     EXPECT_EQ(white.y, cut.objects[0].box.y0);

@@ -247,6 +247,7 @@ void NetworkBuilder::AddPlain(const Node& node, bool channels_last) {
   std::vector<BufferId> operands;
   std::vector<ValueId> reads = node.inputs;
   if (node.epilogue.addend != kNoValue) reads.push_back(node.epilogue.addend);
+  operands.reserve(reads.size());
   for (const ValueId id : reads) {
     operands.push_back(id == kNoValue || graph_.IsConstant(id) ? -1 : Read(id, as));
   }

@@ -30,10 +30,10 @@ std::vector<NetworkOutput> Views(const std::vector<cv::Mat>& results,
 class OpenCvDetector : public Detector {
  public:
   OpenCvDetector(std::vector<std::string> class_names, cv::Size input_size, std::string description,
-                 const DetectorOptions& options, cv::dnn::Net net, HeadDecoder decoder)
+                 const DetectorOptions& options, const cv::dnn::Net& net, HeadDecoder decoder)
       : Detector(std::move(class_names), input_size, std::move(description)),
         options_(options),
-        net_(std::move(net)),
+        net_(net),
         output_names_(net_.getUnconnectedOutLayersNames()),
         decoder_(std::move(decoder)),
         pixels_(input_size, CV_8UC3) {}

@@ -13,9 +13,9 @@ namespace msf {
 // One piece of a concatenation or a slice.
 struct ChannelCopy {
   const uint8_t* from = nullptr;
-  ChannelRun source;
+  ChannelRun source{};
   uint8_t* to = nullptr;
-  ChannelRun target;
+  ChannelRun target{};
   size_t run_bytes = 0;
 };
 

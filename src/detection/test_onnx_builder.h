@@ -81,8 +81,9 @@ class OnnxBuilder {
   // A convolution with random weights that keeps the size of numbers; "same" padding.
   std::string Conv(const std::string& x, int64_t in, int64_t out, int64_t kernel,
                    int64_t stride = 1, int64_t group = 1) {
-    const float fan_in = static_cast<float>(in / group * kernel * kernel);
-    const std::string weights = Random({out, in / group, kernel, kernel}, 1.6f / std::sqrt(fan_in));
+    const int64_t channels = in / group, fan_in = channels * kernel * kernel;
+    const std::string weights =
+        Random({out, channels, kernel, kernel}, 1.6f / std::sqrt(static_cast<float>(fan_in)));
     onnx::NodeProto& node = Add("Conv", {x, weights, Random({out}, 0.3f)});
     Set(node, "strides", std::vector<int64_t>{stride, stride});
     Set(node, "pads", std::vector<int64_t>(4, kernel / 2));

@@ -10,7 +10,7 @@ void BM_Extract(benchmark::State& state) {
   const RgbdFrame frame = FrameOf(TexturedImage(640, 480, 1));
   OrbExtractor extractor({.num_features = static_cast<int>(state.range(0))});
   int points = 0;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     const FrameFeatures features = extractor.Extract(frame);
     points = features.size();
     benchmark::DoNotOptimize(points);

@@ -29,7 +29,7 @@ constexpr DiscMask kDisc;
 
 // The pattern's places as separate arrays: a rotation is then one loop over vectors.
 struct PatternArrays {
-  std::array<float, 512> x, y;  // first the 256 first places, then the 256 second places
+  std::array<float, 512> x{}, y{};  // first the 256 first places, then the 256 second places
   PatternArrays() {
     for (int i = 0; i < 256; ++i) {
       x[i] = kBriefPattern[i].x0, y[i] = kBriefPattern[i].y0;
@@ -65,7 +65,7 @@ Descriptor DescribePatch(const cv::Mat& smoothed, int x, int y, const Eigen::Vec
   static const PatternArrays pattern;
   const float cosine = std::cos(angle_rad), sine = std::sin(angle_rad);
   const int stride = static_cast<int>(smoothed.step);
-  std::array<int32_t, 512> offsets;
+  std::array<int32_t, 512> offsets;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled below
   for (int i = 0; i < 512; ++i) {
     const float u = cosine * pattern.x[i] - sine * pattern.y[i] + offset_px.x();
     const float v = sine * pattern.x[i] + cosine * pattern.y[i] + offset_px.y();
@@ -74,7 +74,7 @@ Descriptor DescribePatch(const cv::Mat& smoothed, int x, int y, const Eigen::Vec
     offsets[i] = row * stride + column;
   }
   const uint8_t* centre = smoothed.ptr<uint8_t>(y) + x;
-  std::array<uint8_t, 512> samples;
+  std::array<uint8_t, 512> samples;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   for (int i = 0; i < 512; ++i) samples[i] = centre[offsets[i]];
   Descriptor descriptor{};
   for (int word = 0; word < 4; ++word) {

@@ -146,8 +146,8 @@ bool UnfilterPng(const uint8_t* filtered, int width, int height, uint8_t* out, s
   const uint8_t* up = zeros.data();
   for (int y = 0; y < height;) {
     const uint8_t* row = filtered + y * stride;
-    std::array<const uint8_t*, kWave> rows;
-    std::array<uint8_t*, kWave> outs;
+    std::array<const uint8_t*, kWave> rows{};
+    std::array<uint8_t*, kWave> outs{};
     rows.fill(row + 1);
     outs.fill(unused.data());
     int num_paeth = 0;

@@ -40,7 +40,7 @@ TEST(LoopClosingConcurrencyTest, TheMapStaysConsistent) {
   Rigid3d T_cw = TestWorld::PoseOnCircle(0), T_cw_true = T_cw;
   Vector6d drift;
   drift << 0.0005, 0.0005, 0.0005, 0.0005, 0.002, -0.0005;
-  for (double deg = 0; deg <= 420; deg += 6) {
+  for (int deg = 0; deg <= 420; deg += 6) {
     const Rigid3d next = TestWorld::PoseOnCircle(deg * kDegree);
     {
       const SharedMap::Writer writer = map.Write();

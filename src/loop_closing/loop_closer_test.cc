@@ -15,11 +15,11 @@ class LoopCloserTest : public ::testing::Test {
   void MakeCloser(const LoopClosingOptions& options = {}) {
     closer_ = std::make_unique<LoopCloser>(options, NoiseOptions{}, map_, database_, 7);
   }
-  void WalkOn(double from_deg, double to_deg, const Rigid3d& T_cw_start) {
+  void WalkOn(int from_deg, int to_deg, const Rigid3d& T_cw_start) {
     Vector6d drift;
     drift << 0.0005, 0.0005, 0.0005, 0.0005, 0.002, -0.0005;
     Rigid3d T_cw_true = TestWorld::PoseOnCircle(from_deg * kDegree), T_cw = T_cw_start;
-    for (double deg = from_deg; deg <= to_deg; deg += 6) {
+    for (int deg = from_deg; deg <= to_deg; deg += 6) {
       const Rigid3d T_cw_next = TestWorld::PoseOnCircle(deg * kDegree);
       const Rigid3d step = T_cw_next * T_cw_true.Inverse();
       // The next keyframe continues from where the map has the last one by now.

@@ -37,8 +37,8 @@ class CorrectionTest : public ::testing::Test {
 
   TestWorld world_{1};
   SharedMap map_{world_.EmptyMap()};
-  const LoopClosingOptions options_;
-  const NoiseOptions noise_;
+  const LoopClosingOptions options_ = {};
+  const NoiseOptions noise_ = {};
 };
 
 TEST_F(CorrectionTest, ALoopRemovesDriftAndDuplicates) {

@@ -123,6 +123,7 @@ std::vector<PlaceVerifier::WordMatch> PlaceVerifier::MatchWords(const KeyFrameVi
     if (!is_new && match.distance < place->second.distance) place->second = match;
   }
   std::vector<WordMatch> matches;
+  matches.reserve(best_of_point.size());
   for (const auto& [point, match] : best_of_point) matches.push_back(match);
   return matches;
 }

@@ -26,9 +26,9 @@ class PlaceVerificationTest : public ::testing::Test {
 
   TestWorld world_{1};
   Map map_ = world_.EmptyMap();
-  const PlaceVerificationOptions options_;
-  const PoseOptimizerOptions pose_;
-  const NoiseOptions noise_;
+  const PlaceVerificationOptions options_ = {};
+  const PoseOptimizerOptions pose_ = {};
+  const NoiseOptions noise_ = {};
   const PlaceVerifier verifier_{*world_.camera(), world_.levels(), options_, pose_, noise_};
 };
 

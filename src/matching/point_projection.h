@@ -31,9 +31,9 @@ struct PointSnapshot {
 
 struct ProjectedPoint {
   Eigen::Vector2d uv_px;
-  double u_right_px;   // virtual stereo coordinate
-  double view_cosine;  // between the ray and the point's mean viewing direction
-  int level;           // at which it should look as it did
+  double u_right_px = 0;   // virtual stereo coordinate
+  double view_cosine = 0;  // between the ray and the point's mean viewing direction
+  int level = 0;           // at which it should look as it did
 };
 
 // Empty when the point lies behind the camera, outside the image, outside [0.8, 1.2] times its

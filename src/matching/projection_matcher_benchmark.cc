@@ -36,7 +36,7 @@ void BM_MatchByProjection(benchmark::State& state) {
                        .max_level = features.level[i],
                        .descriptor = features.descriptors[i]});
   }
-  for (auto _ : state)
+  while (state.KeepRunning())
     benchmark::DoNotOptimize(MatchByProjection(features, queries, {.ratio = 0.8}));
 }
 BENCHMARK(BM_MatchByProjection)->Arg(500)->Arg(2000);

@@ -22,7 +22,7 @@ int BinOf(float angle_rad) {
 std::vector<bool> ConsistentRotations(const std::vector<float>& angle_changes_rad) {
   std::array<int, kNumBins> counts{};
   for (const float angle_rad : angle_changes_rad) ++counts[BinOf(angle_rad)];
-  std::array<int, kNumBins> order;
+  std::array<int, kNumBins> order{};
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return counts[a] > counts[b]; });
   std::array<bool, kNumBins> kept{};

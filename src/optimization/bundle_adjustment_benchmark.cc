@@ -23,7 +23,7 @@ BundleProblem MakeProblem(int num_poses, int num_fixed, int num_points, int wind
 void Run(benchmark::State& state, const BundleProblem& problem) {
   const Camera camera = TestCamera();
   int iterations = 0;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     BundleProblem copy = problem;
     iterations = SolveBundle(camera, copy, {}).iterations;
   }
@@ -39,7 +39,7 @@ BENCHMARK(BM_LocalBundle)->Unit(benchmark::kMillisecond);
 void BM_LocalBundleCeres(benchmark::State& state) {
   const Camera camera = TestCamera();
   const BundleProblem problem = MakeProblem(35, 15, 2000, 8);
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     BundleProblem copy = problem;
     benchmark::DoNotOptimize(SolveBundleWithCeres(camera, copy, {}, /*robust=*/true, 10));
   }

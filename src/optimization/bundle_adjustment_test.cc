@@ -17,7 +17,7 @@ double MaxPoseError(const BundleProblem& a, const BundleProblem& b) {
   return error;
 }
 
-double MedianPointError_m(const BundleProblem& a, const BundleProblem& b) {
+double MedianPointError(const BundleProblem& a, const BundleProblem& b) {
   std::vector<double> errors;
   for (size_t i = 0; i < a.points.size(); ++i)
     errors.push_back((a.points[i].p_w - b.points[i].p_w).norm());
@@ -46,7 +46,7 @@ TEST(BundleAdjustment, FindsTheExactSceneWithoutNoise) {
   const BundleResult result = SolveBundle(TestCamera(), problem, Exact());
   EXPECT_TRUE(result.usable);
   EXPECT_LT(MaxPoseError(problem, truth), 1e-7);
-  EXPECT_LT(MedianPointError_m(problem, truth), 1e-7);
+  EXPECT_LT(MedianPointError(problem, truth), 1e-7);
   EXPECT_LT(result.final_cost, 1e-9 * result.initial_cost);
 }
 
@@ -62,7 +62,7 @@ TEST(BundleAdjustment, RecoversTheSceneAndFindsTheOutliers) {
   const BundleResult result = SolveBundle(TestCamera(), problem, {});
   EXPECT_TRUE(result.usable);
   EXPECT_LT(MaxPoseError(problem, truth), 0.006);
-  EXPECT_LT(MedianPointError_m(problem, truth), 0.01);
+  EXPECT_LT(MedianPointError(problem, truth), 0.01);
   int agree = 0;
   for (size_t i = 0; i < is_outlier.size(); ++i) agree += result.inlier[i] != is_outlier[i];
   EXPECT_GT(agree, 0.93 * is_outlier.size());
@@ -101,7 +101,7 @@ TEST(BundleAdjustment, AgreesWithCeres) {
     SolveBundle(TestCamera(), ours, options);
     SolveBundleWithCeres(TestCamera(), ceres, options, robust, 200);
     EXPECT_LT(MaxPoseError(ours, ceres), 1e-6) << robust;
-    EXPECT_LT(MedianPointError_m(ours, ceres), 1e-6) << robust;
+    EXPECT_LT(MedianPointError(ours, ceres), 1e-6) << robust;
   }
 }
 

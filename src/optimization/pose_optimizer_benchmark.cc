@@ -19,7 +19,7 @@ void BM_OptimizePose(benchmark::State& state) {
   Vector6d twist;
   twist << 0.01, -0.01, 0.005, 0.008, -0.005, 0.006;
   const Rigid3d T_cw_initial = Rigid3d::Exp(twist) * problem.poses[0].T_cw;
-  for (auto _ : state)
+  while (state.KeepRunning())
     benchmark::DoNotOptimize(OptimizePose(camera, T_cw_initial, observations, {}));
   state.counters["observations"] = static_cast<double>(observations.size());
 }

@@ -27,7 +27,7 @@ class TestPoseManifold : public ceres::Manifold {
   }
   static std::array<double, 7> FromPose(const Rigid3d& T) {
     const Eigen::Vector4d q = T.rotation().coeffs();
-    const Eigen::Vector3d t = T.translation();
+    const Eigen::Vector3d& t = T.translation();
     return {q[0], q[1], q[2], q[3], t[0], t[1], t[2]};
   }
   bool Plus(const double* x, const double* delta, double* x_plus_delta) const override {
@@ -93,7 +93,6 @@ inline double SolveBundleWithCeres(const Camera& camera, BundleProblem& problem,
   for (const BundlePose& pose : problem.poses)
     poses.push_back(TestPoseManifold::FromPose(pose.T_cw));
   ceres::Problem ceres_problem;
-  auto* manifold = new TestPoseManifold;
   auto* ordering = new ceres::ParameterBlockOrdering;
   for (const BundleObservation& observation : problem.observations) {
     const double gate = observation.HasDepth() ? options.chi2_three : options.chi2_two;
@@ -105,7 +104,7 @@ inline double SolveBundleWithCeres(const Camera& camera, BundleProblem& problem,
   }
   for (size_t i = 0; i < poses.size(); ++i) {
     if (!ceres_problem.HasParameterBlock(poses[i].data())) continue;
-    ceres_problem.SetManifold(poses[i].data(), manifold);
+    ceres_problem.SetManifold(poses[i].data(), new TestPoseManifold);
     if (problem.poses[i].fixed) ceres_problem.SetParameterBlockConstant(poses[i].data());
     ordering->AddElementToGroup(poses[i].data(), 1);
   }

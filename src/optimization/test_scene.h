@@ -126,8 +126,7 @@ inline std::vector<PoseObservation> ObservationsOfPose(const BundleProblem& prob
   std::vector<PoseObservation> observations;
   for (const BundleObservation& observation : problem.observations) {
     if (observation.pose != pose) continue;
-    PoseObservation seen;
-    static_cast<ImageObservation&>(seen) = observation;
+    PoseObservation seen{static_cast<const ImageObservation&>(observation)};
     seen.p_w = problem.points[observation.point].p_w;
     observations.push_back(seen);
   }

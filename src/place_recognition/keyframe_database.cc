@@ -38,6 +38,7 @@ std::vector<Scored> AccumulateOverNeighbours(const std::map<KeyFrameId, double>&
     known = std::max(known, sum);
   }
   std::vector<Scored> groups;
+  groups.reserve(sum_of_best.size());
   for (const auto& [id, sum] : sum_of_best) groups.push_back({id, sum});
   std::sort(groups.begin(), groups.end(), Better);
   return groups;

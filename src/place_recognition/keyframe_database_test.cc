@@ -2,12 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <thread>
 
 namespace msf {
 namespace {
 
-std::shared_ptr<const BagOfWords> Bag(std::vector<uint32_t> words) {
+std::shared_ptr<const BagOfWords> Bag(const std::vector<uint32_t>& words) {
   auto bag = std::make_shared<BagOfWords>();
   for (const uint32_t word : words) bag->words.emplace_back(word, 1.0f / words.size());
   return bag;
@@ -15,15 +16,13 @@ std::shared_ptr<const BagOfWords> Bag(std::vector<uint32_t> words) {
 
 // Words first .. first + count - 1.
 std::shared_ptr<const BagOfWords> Range(uint32_t first, uint32_t count) {
-  std::vector<uint32_t> words;
-  for (uint32_t i = 0; i < count; ++i) words.push_back(first + i);
+  std::vector<uint32_t> words(count);
+  std::iota(words.begin(), words.end(), first);
   return Bag(words);
 }
 
 std::vector<KeyFrameId> Ids(const std::vector<int>& values) {
-  std::vector<KeyFrameId> ids;
-  for (const int value : values) ids.emplace_back(value);
-  return ids;
+  return std::vector<KeyFrameId>(values.begin(), values.end());
 }
 
 const KeyFrameDatabase::Neighbours kAlone = [](KeyFrameId) { return std::vector<KeyFrameId>(); };

@@ -10,14 +10,14 @@ namespace {
 
 void BM_LoadVocabulary(benchmark::State& state) {
   const std::filesystem::path file = *FindDataFile("models/vocabulary.msfvoc");
-  for (auto _ : state) benchmark::DoNotOptimize(Vocabulary::Load(file));
+  while (state.KeepRunning()) benchmark::DoNotOptimize(Vocabulary::Load(file));
 }
 BENCHMARK(BM_LoadVocabulary)->Unit(benchmark::kMillisecond);
 
 void BM_Transform1000(benchmark::State& state) {
   const Vocabulary vocabulary = *Vocabulary::Load(*FindDataFile("models/vocabulary.msfvoc"));
   const FrameFeatures features = OrbExtractor({}).Extract(FrameOf(TexturedImage(640, 480, 1)));
-  for (auto _ : state) benchmark::DoNotOptimize(vocabulary.Transform(features.descriptors));
+  while (state.KeepRunning()) benchmark::DoNotOptimize(vocabulary.Transform(features.descriptors));
 }
 BENCHMARK(BM_Transform1000)->Unit(benchmark::kMillisecond);
 

@@ -37,12 +37,14 @@ class World {
   }
   std::vector<Descriptor> Image(int first_thing, int count) {
     std::vector<Descriptor> image;
+    image.reserve(count);
     for (int i = 0; i < count; ++i)
       image.push_back(WithNoise(things_[(first_thing + i) % 200], 10, random_));
     return image;
   }
   std::vector<std::vector<Descriptor>> Images(int count) {
     std::vector<std::vector<Descriptor>> images;
+    images.reserve(count);
     for (int i = 0; i < count; ++i) images.push_back(Image(7 * i, 30));
     return images;
   }
@@ -152,6 +154,7 @@ TEST(Vocabulary, RecognisesRenderedPlacesSeenFromElsewhere) {
   }
   const Vocabulary vocabulary = TrainOn(images);
   std::vector<BagOfWords> bags;
+  bags.reserve(images.size());
   for (const auto& image : images) bags.push_back(vocabulary.Transform(image));
   for (size_t i = 0; i < places.size(); ++i) {
     cv::Mat seen_again;

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -48,7 +49,7 @@ void Progress::Update(int done) {
 std::string Progress::Line(int done, double elapsed_s) const {
   const double rate = elapsed_s > 0 ? done / elapsed_s : 0;
   if (total_ <= 0) return fmt::format("{}: {} {}, {:.1f}/s", job_, done, unit_, rate);
-  const int left_s = rate > 0 ? static_cast<int>((total_ - done) / rate + 0.5) : 0;
+  const int left_s = rate > 0 ? static_cast<int>(std::lround((total_ - done) / rate)) : 0;
   return fmt::format("{}: {}/{} {}, {:.1f}/s, {}:{:02} left", job_, done, total_, unit_, rate,
                      left_s / 60, left_s % 60);
 }
