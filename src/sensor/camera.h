@@ -19,6 +19,9 @@ struct Camera {
   double bf = 40;              // focal length times virtual stereo baseline, px m
   double depth_factor = 5000;  // depth image value of one metre
   double fps = 30;             // nominal frame rate, Hz
+  // Rows of the colour image are exposed one after the other: so long after the first row the last
+  // one is, s. 0: all at once (global shutter).
+  double rolling_shutter_s = 0;
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
@@ -36,6 +39,9 @@ struct Camera {
     visit("bf", bf, "focal length times virtual stereo baseline, px m");
     visit("depth_factor", depth_factor, "depth image value of one metre");
     visit("fps", fps, "nominal frame rate, Hz");
+    visit("rolling_shutter_s", rolling_shutter_s,
+          "time from the exposure of the first row of the colour image to that of the last, s; 0: "
+          "all at once");
   }
   Status Check() const;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "feature/rolling_shutter.h"
 #include "tracking/keyframe_creation.h"
 #include "tracking/static_evidence.h"
 
@@ -12,6 +13,11 @@ namespace {
 constexpr double kFreshlyRelocalized_s = 1.0;
 
 constexpr int kMaxLocateAttempts = 3;
+
+// Twist per second of a camera whose coordinates `T_now_then` takes from then to now.
+Vector6d VelocityOf(const Rigid3d& T_now_then, double interval_s) {
+  return T_now_then.Log() / interval_s;
+}
 
 }  // namespace
 
@@ -47,8 +53,11 @@ TrackingResult Tracker::Track(RgbdFramePtr image, std::shared_ptr<const FrameFea
   result.frame_id = image->id;
   result.time_s = image->time_s;
   result.num_features = features->size();
+  extracted_ = features;
+  extracted_removed_ = removed;
   frame_ = Frame{
       .image = std::move(image), .features = std::move(features), .removed = std::move(removed)};
+  UndoRollingShutterAt(PredictVelocity());
   frame_.points.assign(frame_.features->size(), MapPointId());
   matches_.clear();
 
@@ -66,8 +75,8 @@ TrackingResult Tracker::Track(RgbdFramePtr image, std::shared_ptr<const FrameFea
 }
 
 Rigid3d Tracker::PredictMotion(double duration_s) const {
-  if (!velocity_) return {};
-  return Rigid3d::Exp(velocity_->Log() * (duration_s / velocity_interval_s_));
+  const std::optional<Vector6d> velocity = PredictVelocity();
+  return velocity ? Rigid3d::Exp(*velocity * duration_s) : Rigid3d();
 }
 
 bool Tracker::StartMap(TrackingResult& result) {
@@ -90,11 +99,36 @@ bool Tracker::StartMap(TrackingResult& result) {
 bool Tracker::Locate(TrackingResult& result) {
   for (int attempt = 1;; ++attempt) {
     epoch_ = map_.Read()->epoch();
-    const bool located = FindPose(result) && RefineWithLocalMap(result);
+    bool located = FindPose(result);
+    if (located) {
+      // The velocity is known better now than it could be predicted.
+      UndoRollingShutterAt(MeasureVelocity());
+      located = RefineWithLocalMap(result);
+    }
     if (attempt == kMaxLocateAttempts || map_.Read()->epoch() == epoch_) return located;
     TakeMatches({});
     matches_.clear();
   }
+}
+
+void Tracker::UndoRollingShutterAt(const std::optional<Vector6d>& velocity) {
+  if (camera_->rolling_shutter_s == 0 || !velocity) return;
+  const auto undo = [&](const FrameFeatures& extracted) {
+    return std::make_shared<const FrameFeatures>(
+        UndoRollingShutter(extracted, *camera_, *velocity));
+  };
+  frame_.features = undo(*extracted_);
+  frame_.removed = undo(*extracted_removed_);
+}
+
+std::optional<Vector6d> Tracker::PredictVelocity() const {
+  if (!velocity_) return std::nullopt;
+  return VelocityOf(*velocity_, velocity_interval_s_);
+}
+
+std::optional<Vector6d> Tracker::MeasureVelocity() const {
+  if (!last_frame_tracked_) return std::nullopt;
+  return VelocityOf(frame_.T_cw * last_.T_cw.Inverse(), frame_.image->time_s - last_.image->time_s);
 }
 
 bool Tracker::FindPose(TrackingResult& result) {

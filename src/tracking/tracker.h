@@ -49,6 +49,11 @@ class Tracker {
   bool RelocalizeFrame();
   // Matches the local map and optimises once more; false when too little of it agrees.
   bool RefineWithLocalMap(TrackingResult& result);
+  // Moves the features to where they would be without a rolling shutter, if the velocity is known.
+  void UndoRollingShutterAt(const std::optional<Vector6d>& velocity);
+  // Twist per second by the last two poses, and by the present one and the last.
+  std::optional<Vector6d> PredictVelocity() const;
+  std::optional<Vector6d> MeasureVelocity() const;
   // What this frame says about the points of the map: `expected` ones should be visible.
   void TellMap(const std::vector<MapPointId>& expected, bool tracked);
   void InsertKeyFrameIfWanted(const MappingLoad& load, TrackingResult& result);
@@ -71,7 +76,9 @@ class Tracker {
 
   TrackingState state_ = TrackingState::kInitialising;
   Frame frame_;  // the present one
-  Frame last_;   // the last one that had a pose
+  // Its features and the removed ones where a rolling shutter shows them.
+  std::shared_ptr<const FrameFeatures> extracted_, extracted_removed_;
+  Frame last_;  // the last one that had a pose
   std::vector<PointMatch> matches_;
   std::optional<Rigid3d>
       velocity_;  // T_cl: last camera to present camera, from one frame to the next
