@@ -112,7 +112,8 @@ bool Tracker::Locate(TrackingResult& result) {
 }
 
 void Tracker::UndoRollingShutterAt(const std::optional<Vector6d>& velocity) {
-  if (camera_->rolling_shutter_s == 0 || !velocity) return;
+  const bool is_rolling = camera_->rolling_shutter_s > 0 && options_.tracking.undo_rolling_shutter;
+  if (!is_rolling || !velocity) return;
   const auto undo = [&](const FrameFeatures& extracted) {
     return std::make_shared<const FrameFeatures>(
         UndoRollingShutter(extracted, *camera_, *velocity));

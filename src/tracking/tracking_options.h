@@ -47,6 +47,7 @@ struct TrackingOptions {
   double local_radius_factor_refined = 3;
   int local_search_rounds = 2;
   double local_match_ratio = 0.8;
+  bool undo_rolling_shutter = true;
   int min_local_inliers = 30;
   int min_local_inliers_relocalized = 50;
   double recently_lost_s = 3;
@@ -83,6 +84,8 @@ struct TrackingOptions {
           "searches of the local map, each followed by an optimisation");
     visit("local_match_ratio", local_match_ratio,
           "best to second best at the same level, matching the local map");
+    visit("undo_rolling_shutter", undo_rolling_shutter,
+          "points go where the middle row would show them (camera.rolling_shutter_s)");
     visit("min_local_inliers", min_local_inliers, "inliers with which a frame counts as tracked");
     visit("min_local_inliers_relocalized", min_local_inliers_relocalized,
           "the same within a second of relocalisation");
