@@ -13,10 +13,11 @@ namespace msf {
 // Measurement noise. A point found at pyramid level l is located to `position_sigma_px` * scale(l).
 // Disparity (bf / depth) carries the noise of the depth sensor, which a structured-light camera has
 // constant in disparity, plus the error of sampling the depth next to the true point, which grows
-// with the patch.
+// with the patch. What a sensor's calibration leaves (a per cent of depth) counts as noise, too:
+// with the sensor's mere 0.15 px depth would overrule positions that agree.
 struct NoiseOptions {
   double position_sigma_px = 1.0;
-  double disparity_sigma_px = 0.15;
+  double disparity_sigma_px = 0.5;
   double disparity_level_share = 1.0;
   double disparity_knee = 2.5;
 
