@@ -17,7 +17,7 @@ namespace msf {
 // with the sensor's mere 0.15 px depth would overrule positions that agree.
 struct NoiseOptions {
   double position_sigma_px = 1.0;
-  double disparity_sigma_px = 0.5;
+  double disparity_sigma_px = 0.3;
   double disparity_level_share = 1.0;
   double disparity_knee = 2.5;
 
