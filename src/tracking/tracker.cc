@@ -128,7 +128,9 @@ std::optional<Vector6d> Tracker::PredictVelocity() const {
 }
 
 std::optional<Vector6d> Tracker::MeasureVelocity() const {
-  if (!last_frame_tracked_) return std::nullopt;
+  // A pose found anew may be in another map, or far from where the last one was taken to be.
+  const bool is_relocalized = relocalized_time_s_ == frame_.image->time_s;
+  if (!last_frame_tracked_ || is_relocalized) return std::nullopt;
   return VelocityOf(frame_.T_cw * last_.T_cw.Inverse(), frame_.image->time_s - last_.image->time_s);
 }
 
