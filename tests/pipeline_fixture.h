@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <opencv2/core/utility.hpp>
 #include <string>
 
 #include "evaluation/evaluation.h"
@@ -12,6 +13,13 @@
 #include "system/system.h"
 
 namespace msf {
+
+// As `msf-slam run` has it. The thread sanitizer would take what the pool's threads, which it cannot
+// see into, hand over for races.
+inline const bool kOpenCvHasOneThread = [] {
+  cv::setNumThreads(1);
+  return true;
+}();
 
 struct PipelineRun {
   Reconstruction reconstruction;
