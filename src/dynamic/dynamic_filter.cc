@@ -10,8 +10,10 @@ namespace msf {
 namespace {
 
 // Static probabilities. Points that are not used at all have less than
-// DynamicOptions::min_static_probability.
+// DynamicOptions::min_static_probability. Of these the map may take back (see
+// TrackingOptions::readmit_probability) the ones that a single test speaks against.
 constexpr float kOnObject = 0.05f;
+constexpr float kStillOnObject = 0.15f;
 constexpr float kMovesTwice = 0.1f;
 constexpr float kMovesOnce = 0.25f;
 constexpr float kReadmittedWeight = 0.3f;
@@ -267,10 +269,11 @@ bool DynamicFilter::CoversImage(const ObjectTrack& track) const {
 
 void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
   result.mask = cv::Mat1b(work.view.depth.rows(), work.view.depth.cols(), static_cast<uint8_t>(0));
-  cv::Mat1b settled = result.mask.clone();
+  cv::Mat1b settled = result.mask.clone(), movers = result.mask.clone();
   for (const ObjectTrack& track : tracks_.tracks()) {
     if (track.mask.empty() || !IsCredible(track)) continue;
     if (track.Removes()) result.mask |= track.mask.cells;
+    if (track.Removes() && track.kind == ObjectKind::kUnknown) movers |= track.mask.cells;
     if (track.kind == ObjectKind::kKnown && track.state == MotionState::kStatic)
       settled |= track.mask.cells;
   }
@@ -278,7 +281,10 @@ void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
     const Eigen::Vector2f& px = work.features.image_px[i];
     const cv::Point cell = work.view.depth.CellOf(px.x(), px.y());
     if (result.mask(cell) != 0) {
-      result.labels.Set(i, PointReason::kObject, kOnObject);
+      // A detection says that there is an object, not which of the points around it are its own.
+      const bool is_still = work.motion[i] == PointMotion::kStatic &&
+                            !Moves(work.slow_motion[i]) && movers(cell) == 0;
+      result.labels.Set(i, PointReason::kObject, is_still ? kStillOnObject : kOnObject);
     } else if (result.camera_motion_reliable && Moves(work.motion[i])) {
       const PointReason reason =
           work.motion[i] == PointMotion::kMovesInDepth ? PointReason::kDepth : PointReason::kFlow;
@@ -372,14 +378,8 @@ SplitFeatures SplitByProbability(const FrameFeatures& features, const PointLabel
   for (int i = 0; i < features.size(); ++i) {
     const bool is_used = labels.static_probability[i] >= static_cast<float>(min_static_probability);
     FrameFeatures& part = is_used ? split.used : split.removed;
-    part.image_px.push_back(features.image_px[i]);
-    part.uv_px.push_back(features.uv_px[i]);
-    part.depth_m.push_back(features.depth_m[i]);
-    part.u_right_px.push_back(features.u_right_px[i]);
-    part.angle_rad.push_back(features.angle_rad[i]);
-    part.level.push_back(features.level[i]);
-    part.static_weight.push_back(labels.static_probability[i]);
-    part.descriptors.push_back(features.descriptors[i]);
+    part.Append(features, i, labels.static_probability[i]);
+    if (!is_used) split.removed_from.push_back(i);
   }
   split.used.BuildGrid(camera);
   split.removed.BuildGrid(camera);

@@ -131,6 +131,7 @@ class DynamicFilter {
 struct SplitFeatures {
   FrameFeatures used;     // static enough
   FrameFeatures removed;  // the others
+  std::vector<int> removed_from;  // per removed feature: its index before
 };
 SplitFeatures SplitByProbability(const FrameFeatures& features, const PointLabels& labels,
                                  double min_static_probability, const Camera& camera);

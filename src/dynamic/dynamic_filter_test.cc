@@ -343,8 +343,10 @@ TEST(SplitByProbability, KeepsWhatIsStaticEnoughWithItsWeight) {
   labels.Set(0, PointReason::kObject, 0.05f);
   labels.Set(2, PointReason::kFlow, 0.29f);
   labels.Set(3, PointReason::kReadmitted, 0.3f);
-  const auto [kept, removed] = SplitByProbability(features, labels, 0.3, *TestCamera());
+  const auto [kept, removed, removed_from] =
+      SplitByProbability(features, labels, 0.3, *TestCamera());
   ASSERT_EQ(kept.size(), 2);
+  EXPECT_EQ(removed_from, (std::vector<int>{0, 2}));
   EXPECT_EQ(kept.static_weight, (std::vector<float>{1, 0.3f}));
   EXPECT_EQ(removed.static_weight, (std::vector<float>{0.05f, 0.29f}));
   EXPECT_EQ(removed.image_px[1], features.image_px[2]);

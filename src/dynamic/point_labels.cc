@@ -18,6 +18,8 @@ const char* ToString(PointReason reason) {
       return "settled";
     case PointReason::kReadmitted:
       return "readmitted";
+    case PointReason::kKnown:
+      return "known";
   }
   return "unknown";
 }

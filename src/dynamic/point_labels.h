@@ -17,8 +17,9 @@ enum class PointReason : uint8_t {
   kDepth,       // its depth does not
   kSettled,     // on an object that has come to rest: used with reduced weight
   kReadmitted,  // suspicious, used with little weight because too few others are left
+  kKnown,       // suspicious, but where the map has a static point that looks like it
 };
-constexpr int kNumPointReasons = 7;
+constexpr int kNumPointReasons = 8;
 const char* ToString(PointReason reason);
 
 // One entry per feature of the frame.

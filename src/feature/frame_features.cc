@@ -21,6 +21,17 @@ void UndistortedBounds(const Camera& camera, Eigen::Vector2f& lower, Eigen::Vect
 
 }  // namespace
 
+void FrameFeatures::Append(const FrameFeatures& other, int i, float static_probability) {
+  image_px.push_back(other.image_px[i]);
+  uv_px.push_back(other.uv_px[i]);
+  depth_m.push_back(other.depth_m[i]);
+  u_right_px.push_back(other.u_right_px[i]);
+  angle_rad.push_back(other.angle_rad[i]);
+  level.push_back(other.level[i]);
+  static_weight.push_back(static_probability);
+  descriptors.push_back(other.descriptors[i]);
+}
+
 void FrameFeatures::BuildGrid(const Camera& camera) {
   Eigen::Vector2f lower, upper;
   UndistortedBounds(camera, lower, upper);

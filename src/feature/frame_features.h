@@ -28,6 +28,8 @@ struct FrameFeatures {
     return camera.Unproject(uv_px[i].cast<double>(), depth_m[i]);
   }
 
+  // Adds point `i` of `other` with a static probability of its own; the grid is to be built anew.
+  void Append(const FrameFeatures& other, int i, float static_probability);
   // Sorts the points into the grid; to be called once the arrays are filled.
   void BuildGrid(const Camera& camera);
   // Appends the points whose undistorted position lies within radius_px (a square) and whose level

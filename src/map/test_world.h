@@ -15,8 +15,8 @@ namespace msf {
 
 class TestWorld {
  public:
-  explicit TestWorld(unsigned seed, int num_landmarks = 5000)
-      : camera_(std::make_shared<const Camera>(*Camera::Preset("simulated"))), random_(seed) {
+  explicit TestWorld(unsigned seed, int num_landmarks = 5000, double rolling_shutter_s = 0)
+      : camera_(CameraWith(rolling_shutter_s)), random_(seed) {
     for (int i = 0; i < num_landmarks; ++i) {
       const double angle_rad = Uniform(-std::numbers::pi, std::numbers::pi);
       const double radius_m = Uniform(4.5, 6.0);
@@ -43,17 +43,18 @@ class TestWorld {
     return Rigid3d(R_wc, R_wc * Eigen::Vector3d(0, 0, 3)).Inverse();
   }
 
-  // What the camera sees from there: noisy features, and which landmark each one shows.
+  // What the camera sees from there: noisy features, and which landmark each one shows. `velocity`:
+  // its motion (see UndoRollingShutter), which a rolling shutter shows.
   struct View {
     std::shared_ptr<const FrameFeatures> features;
     std::shared_ptr<const BagOfWords> words;
     std::vector<int> landmarks;
   };
-  View Look(const Rigid3d& T_cw_true) {
+  View Look(const Rigid3d& T_cw_true, const Vector6d& velocity = Vector6d::Zero()) {
     auto features = std::make_shared<FrameFeatures>();
     View view;
     for (size_t i = 0; i < landmarks_.size(); ++i) {
-      const Eigen::Vector3d p_c = T_cw_true * landmarks_[i].p_w;
+      const Eigen::Vector3d p_c = SeenByRow(T_cw_true * landmarks_[i].p_w, velocity);
       if (p_c.z() < 0.5) continue;
       const Eigen::Vector2d uv_px =
           camera_->Project(p_c) + Eigen::Vector2d(Normal(0.4), Normal(0.4));
@@ -153,6 +154,21 @@ class TestWorld {
     double max_distance_m = 0;
   };
 
+  static std::shared_ptr<const Camera> CameraWith(double rolling_shutter_s) {
+    Camera camera = *Camera::Preset("simulated");
+    camera.rolling_shutter_s = rolling_shutter_s;
+    return std::make_shared<const Camera>(camera);
+  }
+  // Where a point is when the row that shows it is exposed; the row decides the time and the time
+  // the row.
+  Eigen::Vector3d SeenByRow(const Eigen::Vector3d& p_c, const Vector6d& velocity) const {
+    Eigen::Vector3d p_row = p_c;
+    for (int i = 0; i < 10 && camera_->rolling_shutter_s > 0 && p_row.z() > 0; ++i) {
+      const double row_share = camera_->Project(p_row).y() / (camera_->height - 1) - 0.5;
+      p_row = Rigid3d::Exp(velocity * (row_share * camera_->rolling_shutter_s)) * p_c;
+    }
+    return p_row;
+  }
   KeyFrameId Insert(const Rigid3d& T_cw_true, const Rigid3d& T_cw, Map& map) {
     const View view = Look(T_cw_true);
     KeyFrame keyframe;

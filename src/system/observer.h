@@ -14,8 +14,8 @@ namespace msf {
 class Observer {
  public:
   virtual ~Observer() = default;
-  // What was found to move, before the frame is tracked on the rest. `features`: all, also those
-  // that are not used. Not called in mode off.
+  // What was found to move, after the frame was tracked on the rest and before OnFrame().
+  // `features`: all, also those that are not used. Not called in mode off.
   virtual void OnDynamics(const RgbdFrame& /*frame*/, const FrameFeatures& /*features*/,
                           const DynamicResult& /*result*/) {}
   virtual void OnFrame(const TrackingResult& /*result*/) {}

@@ -57,8 +57,7 @@ class System::Impl {
  private:
   void OfferToDetector(const RgbdFramePtr& frame, StageTimings& timings_ms);
   FrameFeatures Extract(const RgbdFrame& frame, StageTimings& timings_ms);
-  SplitFeatures SplitPoints(const RgbdFramePtr& frame, FrameFeatures features,
-                            StageTimings& timings_ms);
+  DynamicResult Classify(const RgbdFramePtr& frame, const FrameFeatures& features);
   void TellFilter(const TrackingResult& result);
   MappingLoad Load() const;
   void HandOn(KeyFrameId id);
@@ -131,13 +130,23 @@ StatusOr<TrackingResult> System::Impl::Track(const RgbdFramePtr& frame) {
 
   StageTimings timings_ms;
   if (detection_source_) OfferToDetector(frame, timings_ms);
-  SplitFeatures features = SplitPoints(frame, Extract(*frame, timings_ms), timings_ms);
+  FrameFeatures features = Extract(*frame, timings_ms);
+  DynamicResult dynamics;
+  SplitFeatures split;
+  if (filter_) {
+    const StageTimer timer(timings_ms, "dynamic");
+    dynamics = Classify(frame, features);
+    split = SplitByProbability(features, dynamics.labels, options_.dynamic.min_static_probability,
+                               *camera_);
+  } else {
+    split.used = std::move(features);
+  }
   TrackingResult result;
   {
     const StageTimer timer(timings_ms, "tracking");
     result =
-        tracker_.Track(frame, std::make_shared<const FrameFeatures>(std::move(features.used)),
-                       std::make_shared<const FrameFeatures>(std::move(features.removed)), Load());
+        tracker_.Track(frame, std::make_shared<const FrameFeatures>(std::move(split.used)),
+                       std::make_shared<const FrameFeatures>(std::move(split.removed)), Load());
   }
   for (const auto& [stage, ms] : result.timings_ms) timings_ms["tracking." + stage] = ms;
   timings_ms["total"] = 0;
@@ -145,7 +154,12 @@ StatusOr<TrackingResult> System::Impl::Track(const RgbdFramePtr& frame) {
     if (timings_ms.contains(stage)) timings_ms["total"] += timings_ms[stage];
   }
   result.timings_ms = std::move(timings_ms);
-  if (filter_) TellFilter(result);
+  if (filter_) {
+    TellFilter(result);
+    for (const int k : result.readmitted)
+      dynamics.labels.Set(split.removed_from[k], PointReason::kKnown, 1);
+    for (const auto& observer : observers_) observer->OnDynamics(*frame, features, dynamics);
+  }
   recorder_.Record(result);
   if (result.new_keyframe) HandOn(*result.new_keyframe);
   for (const auto& observer : observers_) observer->OnFrame(result);
@@ -167,18 +181,12 @@ FrameFeatures System::Impl::Extract(const RgbdFrame& frame, StageTimings& timing
   return extractor_.Extract(frame, num_features, T_depth_color);
 }
 
-SplitFeatures System::Impl::SplitPoints(const RgbdFramePtr& frame, FrameFeatures features,
-                                        StageTimings& timings_ms) {
-  if (!filter_) return {.used = std::move(features), .removed = {}};
-  const StageTimer timer(timings_ms, "dynamic");
+DynamicResult System::Impl::Classify(const RgbdFramePtr& frame, const FrameFeatures& features) {
   const std::shared_ptr<const Detections> detections =
       detection_source_ ? detection_source_->Newest(frame->id) : nullptr;
   const double since_last_s = frame->time_s - previous_time_s_;
   const Rigid3d T_last_now = tracker_.PredictMotion(since_last_s).Inverse();
-  const DynamicResult result = filter_->Classify(*frame, features, T_last_now, detections.get());
-  for (const auto& observer : observers_) observer->OnDynamics(*frame, features, result);
-  return SplitByProbability(features, result.labels, options_.dynamic.min_static_probability,
-                            *camera_);
+  return filter_->Classify(*frame, features, T_last_now, detections.get());
 }
 
 void System::Impl::TellFilter(const TrackingResult& result) {

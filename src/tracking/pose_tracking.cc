@@ -51,6 +51,43 @@ LastFrameQueries ProjectLastFrame(const TrackingContext& context, const Map& map
   return result;
 }
 
+// Ascending.
+std::vector<MapPointId> PointsOf(const std::vector<PointMatch>& matches) {
+  std::vector<MapPointId> ids;
+  ids.reserve(matches.size());
+  for (const PointMatch& match : matches) ids.push_back(match.point);
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+struct LocalQueries {
+  std::vector<ProjectionQuery> queries;
+  std::vector<const PointSnapshot*> points;
+};
+
+// The points that should be visible from `T_cw`, without those of `matched` (ascending).
+LocalQueries ProjectLocalPoints(const TrackingContext& context,
+                                const std::vector<PointSnapshot>& points, const Rigid3d& T_cw,
+                                const std::vector<MapPointId>& matched, double radius_factor) {
+  LocalQueries result;
+  const ViewProjector project(T_cw, context.camera, context.levels);
+  for (const PointSnapshot& point : points) {
+    if (std::binary_search(matched.begin(), matched.end(), point.id)) continue;
+    const std::optional<ProjectedPoint> projected = project(point);
+    if (!projected) continue;
+    const double base_px = projected->view_cosine > 0.998 ? 2.5 : 4.0;
+    result.queries.push_back(
+        {.uv_px = projected->uv_px,
+         .u_right_px = projected->u_right_px,
+         .radius_px = base_px * radius_factor * context.levels.scale(projected->level),
+         .min_level = std::max(0, projected->level - 1),
+         .max_level = projected->level,
+         .descriptor = point.descriptor});
+    result.points.push_back(&point);
+  }
+  return result;
+}
+
 }  // namespace
 
 PointMatch MakePointMatch(const MapPoint& point, const FrameFeatures& features, int feature) {
@@ -104,42 +141,37 @@ LocalMatches MatchLocalPoints(const TrackingContext& context,
                               const FrameFeatures& features, const Rigid3d& T_cw,
                               const std::vector<PointMatch>& matched, double radius_factor) {
   std::vector<uint8_t> taken(features.size(), 0);
-  std::vector<MapPointId> matched_ids;
-  for (const PointMatch& match : matched) {
-    taken[match.feature] = 1;
-    matched_ids.push_back(match.point);
-  }
-  std::sort(matched_ids.begin(), matched_ids.end());
-
+  for (const PointMatch& match : matched) taken[match.feature] = 1;
   LocalMatches result;
-  result.expected = matched_ids;
-  std::vector<ProjectionQuery> queries;
-  std::vector<const PointSnapshot*> searched;
-  const ViewProjector project(T_cw, context.camera, context.levels);
-  for (const PointSnapshot& point : points) {
-    if (std::binary_search(matched_ids.begin(), matched_ids.end(), point.id)) continue;
-    const std::optional<ProjectedPoint> projected = project(point);
-    if (!projected) continue;
-    const double base_px = projected->view_cosine > 0.998 ? 2.5 : 4.0;
-    queries.push_back(
-        {.uv_px = projected->uv_px,
-         .u_right_px = projected->u_right_px,
-         .radius_px = base_px * radius_factor * context.levels.scale(projected->level),
-         .min_level = std::max(0, projected->level - 1),
-         .max_level = projected->level,
-         .descriptor = point.descriptor});
-    searched.push_back(&point);
-    result.expected.push_back(point.id);
-  }
-  const std::vector<int> found =
-      MatchByProjection(features, queries, {.ratio = context.options.local_match_ratio}, taken);
+  result.expected = PointsOf(matched);
+  const LocalQueries search =
+      ProjectLocalPoints(context, points, T_cw, result.expected, radius_factor);
+  for (const PointSnapshot* point : search.points) result.expected.push_back(point->id);
+  const std::vector<int> found = MatchByProjection(
+      features, search.queries, {.ratio = context.options.local_match_ratio}, taken);
   for (size_t q = 0; q < found.size(); ++q) {
     if (found[q] < 0) continue;
-    const PointSnapshot& point = *searched[q];
+    const PointSnapshot& point = *search.points[q];
     result.matches.push_back(
         {found[q], point.id, point.p_w, MatchWeight(features, found[q], point.static_weight)});
   }
   return result;
+}
+
+std::vector<Suspect> FindSuspects(const TrackingContext& context,
+                                  const std::vector<PointSnapshot>& points,
+                                  const FrameFeatures& removed, const Rigid3d& T_cw,
+                                  const std::vector<PointMatch>& matched) {
+  std::vector<Suspect> suspects;
+  if (removed.size() == 0) return suspects;
+  const LocalQueries search = ProjectLocalPoints(context, points, T_cw, PointsOf(matched), 1);
+  const std::vector<int> found = MatchByProjection(
+      removed, search.queries,
+      {.max_distance = kStrictDescriptorDistance, .ratio = context.options.local_match_ratio});
+  for (size_t q = 0; q < found.size(); ++q) {
+    if (found[q] >= 0) suspects.push_back({found[q], search.points[q]});
+  }
+  return suspects;
 }
 
 bool OptimizeFramePose(const TrackingContext& context, const FrameFeatures& features,

@@ -54,6 +54,20 @@ LocalMatches MatchLocalPoints(const TrackingContext& context,
                               const FrameFeatures& features, const Rigid3d& T_cw,
                               const std::vector<PointMatch>& matched, double radius_factor);
 
+// A feature that the frame does without, since it seems to move, where a point of the map should be
+// seen and looks like it.
+struct Suspect {
+  int removed_feature = -1;
+  const PointSnapshot* point = nullptr;
+};
+
+// The suspects among `removed`; `matched`: points that were found elsewhere. They point into
+// `points`.
+std::vector<Suspect> FindSuspects(const TrackingContext& context,
+                                  const std::vector<PointSnapshot>& points,
+                                  const FrameFeatures& removed, const Rigid3d& T_cw,
+                                  const std::vector<PointMatch>& matched);
+
 // Optimises the pose on the matches, starting at `T_cw`, and drops the matches that disagree. False
 // (nothing changed but the matches that disagree are gone) when fewer than `min_inliers` remain.
 bool OptimizeFramePose(const TrackingContext& context, const FrameFeatures& features,

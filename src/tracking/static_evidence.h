@@ -15,14 +15,13 @@ struct StaticEvidence {
   float static_probability = 1;
 };
 
-// `matches`: map points found among the frame's own features. `local_points` that are not among
-// them are looked for where `T_cw` puts them in `removed`: the features that the frame did without
-// because they seem to move, with their static probabilities. What says nothing new (a point that
-// was never suspected, found on a feature that is not) is left out.
-std::vector<StaticEvidence> GatherStaticEvidence(const TrackingContext& context,
-                                                 std::span<const PointSnapshot> local_points,
-                                                 const FrameFeatures& features,
+// `matches`: map points found among the frame's own features. `suspects`: those found among
+// `removed`, the features that the frame did without, with their static probabilities; the ones
+// that are in `matches` by now have been readmitted and are doubted no more. What says nothing new
+// (a point that was never suspected, found on a feature that is not) is left out.
+std::vector<StaticEvidence> GatherStaticEvidence(const FrameFeatures& features,
                                                  std::span<const PointMatch> matches,
-                                                 const FrameFeatures& removed, const Rigid3d& T_cw);
+                                                 const FrameFeatures& removed,
+                                                 std::span<const Suspect> suspects);
 
 }  // namespace msf

@@ -14,8 +14,9 @@ class StaticEvidenceTest : public ::testing::Test {
   std::vector<StaticEvidence> Gather(const FrameFeatures& features,
                                      const std::vector<PointMatch>& matches,
                                      const FrameFeatures& removed) const {
-    return GatherStaticEvidence(at_.context, local_.points(), features, matches, removed,
-                                at_.T_cw_true);
+    return GatherStaticEvidence(
+        features, matches, removed,
+        FindSuspects(at_.context, local_.points(), removed, at_.T_cw_true, matches));
   }
   std::vector<PointMatch> Match() const {
     return MatchLastFrame(at_.context, at_.map, at_.LastFrame(), *at_.view.features, at_.T_cw_true);

@@ -57,7 +57,6 @@ TrackingResult Tracker::Track(RgbdFramePtr image, std::shared_ptr<const FrameFea
   extracted_removed_ = removed;
   frame_ = Frame{
       .image = std::move(image), .features = std::move(features), .removed = std::move(removed)};
-  UndoRollingShutterAt(PredictVelocity());
   frame_.points.assign(frame_.features->size(), MapPointId());
   matches_.clear();
 
@@ -98,6 +97,8 @@ bool Tracker::StartMap(TrackingResult& result) {
 // after do not go together: then the frame is located once more.
 bool Tracker::Locate(TrackingResult& result) {
   for (int attempt = 1;; ++attempt) {
+    UseExtractedFeatures();
+    UndoRollingShutterAt(PredictVelocity());
     epoch_ = map_.Read()->epoch();
     bool located = FindPose(result);
     if (located) {
@@ -109,6 +110,12 @@ bool Tracker::Locate(TrackingResult& result) {
     TakeMatches({});
     matches_.clear();
   }
+}
+
+// An attempt before may have changed them.
+void Tracker::UseExtractedFeatures() {
+  frame_.features = extracted_;
+  frame_.removed = extracted_removed_;
 }
 
 void Tracker::UndoRollingShutterAt(const std::optional<Vector6d>& velocity) {
@@ -217,6 +224,11 @@ bool Tracker::RefineWithLocalMap(TrackingResult& result) {
     tracked = OptimizeFramePose(context_, *frame_.features, min_inliers, matches_, frame_.T_cw);
     radius_factor = options.local_radius_factor_refined;
   }
+  if (tracked) {
+    suspects_ =
+        FindSuspects(context_, local_map_.points(), *frame_.removed, frame_.T_cw, matches_);
+    tracked = ReadmitKnown(min_inliers, result);
+  }
   result.num_inliers = static_cast<int>(matches_.size());
   TakeMatches(matches_);
   if (!local_map_.best_keyframe().valid()) return false;
@@ -227,11 +239,37 @@ bool Tracker::RefineWithLocalMap(TrackingResult& result) {
   return tracked;
 }
 
+bool Tracker::ReadmitKnown(int min_inliers, TrackingResult& result) {
+  const FrameFeatures& removed = *frame_.removed;
+  auto features = std::make_shared<FrameFeatures>(*frame_.features);
+  std::vector<int> added;  // the removed feature behind each one that is added
+  for (const auto& [feature, point] : suspects_) {
+    const float probability = removed.static_weight[feature];
+    if (probability < options_.tracking.readmit_probability ||
+        point->static_weight < options_.tracking.readmit_point_probability)
+      continue;
+    matches_.push_back({features->size(), point->id, point->p_w, point->static_weight});
+    features->Append(removed, feature, probability);
+    added.push_back(feature);
+  }
+  result.readmitted.clear();
+  if (added.empty()) return true;
+  const bool tracked = OptimizeFramePose(context_, *features, min_inliers, matches_, frame_.T_cw);
+  const int num_own = features->size() - static_cast<int>(added.size());
+  for (const PointMatch& match : matches_) {
+    if (match.feature < num_own) continue;
+    features->static_weight[match.feature] = static_cast<float>(match.weight);
+    result.readmitted.push_back(added[match.feature - num_own]);
+  }
+  features->BuildGrid(*camera_);
+  frame_.features = std::move(features);
+  return tracked;
+}
+
 void Tracker::TellMap(const std::vector<MapPointId>& expected, bool tracked) {
   std::vector<StaticEvidence> evidence;
   if (tracked) {
-    evidence = GatherStaticEvidence(context_, local_map_.points(), *frame_.features, matches_,
-                                    *frame_.removed, frame_.T_cw);
+    evidence = GatherStaticEvidence(*frame_.features, matches_, *frame_.removed, suspects_);
   }
   SharedMap::Writer map = map_.Write();
   for (const MapPointId id : expected) {

@@ -29,8 +29,8 @@ class Tracker {
           const KeyFrameDatabase& database);
 
   // Frames must come in the order of time. `removed`: features that seem to move; they are not
-  // used, but points of the map that look like them are doubted. `load` says how busy the mapper
-  // is.
+  // used unless the map knows better (TrackingOptions::readmit_probability), and points of the map
+  // that look like them are doubted. `load` says how busy the mapper is.
   TrackingResult Track(RgbdFramePtr image, std::shared_ptr<const FrameFeatures> features,
                        std::shared_ptr<const FrameFeatures> removed, const MappingLoad& load);
 
@@ -49,6 +49,9 @@ class Tracker {
   bool RelocalizeFrame();
   // Matches the local map and optimises once more; false when too little of it agrees.
   bool RefineWithLocalMap(TrackingResult& result);
+  // What was removed as moving comes back where the map has a static point that looks like it.
+  bool ReadmitKnown(int min_inliers, TrackingResult& result);
+  void UseExtractedFeatures();
   // Moves the features to where they would be without a rolling shutter, if the velocity is known.
   void UndoRollingShutterAt(const std::optional<Vector6d>& velocity);
   // Twist per second by the last two poses, and by the present one and the last.
@@ -80,6 +83,7 @@ class Tracker {
   std::shared_ptr<const FrameFeatures> extracted_, extracted_removed_;
   Frame last_;  // the last one that had a pose
   std::vector<PointMatch> matches_;
+  std::vector<Suspect> suspects_;  // among the removed features; they point into local_map_
   std::optional<Rigid3d>
       velocity_;  // T_cl: last camera to present camera, from one frame to the next
   double velocity_interval_s_ = 0;  // the time between these two

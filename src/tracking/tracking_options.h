@@ -53,6 +53,8 @@ struct TrackingOptions {
   double recently_lost_s = 3;
   int min_keyframes_to_keep_map = 10;
   double min_static_probability = 0.3;
+  double readmit_probability = 0.12;
+  double readmit_point_probability = 0.6;
   KeyFramePolicyOptions keyframe;
   PoseOptimizerOptions pose;
 
@@ -95,6 +97,11 @@ struct TrackingOptions {
           "a smaller map is forgotten when lost");
     visit("min_static_probability", min_static_probability,
           "features less likely static never become map points");
+    visit("readmit_probability", readmit_probability,
+          "features that were removed as moving, but are at least this likely static, come back "
+          "where the map has a static point that looks like them; 1: never ...");
+    visit("readmit_point_probability", readmit_point_probability,
+          "... and how likely static that point must be");
     visit("keyframe", keyframe, "");
     visit("pose", pose, "");
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "geometry/rigid3d.h"
 #include "util/stage_timer.h"
@@ -27,6 +28,7 @@ struct TrackingResult {
   MapId map_id;
   int num_features = 0;
   int num_inliers = 0;  // map points that agree with the pose
+  std::vector<int> readmitted;  // of the removed features, those that are used after all
   KeyFrameId reference;
   Rigid3d T_c_reference;
   bool started_map = false;                // this frame is the first of a new map

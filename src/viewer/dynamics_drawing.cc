@@ -30,6 +30,8 @@ cv::Scalar ColorOf(PointReason reason) {
       return {240, 180, 40};
     case PointReason::kReadmitted:
       return {255, 255, 255};
+    case PointReason::kKnown:
+      return {160, 200, 40};
   }
   return {};
 }

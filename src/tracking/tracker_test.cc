@@ -1,0 +1,161 @@
+#include "tracking/tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <set>
+
+#include "map/test_world.h"
+#include "place_recognition/vocabulary_training.h"
+
+namespace msf {
+namespace {
+
+constexpr double kFrame_s = 1.0 / 30;
+
+// A camera that goes round inside the ring of landmarks: tracking alone, without a mapper.
+class Trip {
+ public:
+  explicit Trip(const TrackingOptions& options, double rolling_shutter_s = 0)
+      : world_(1, 5000, rolling_shutter_s),
+        map_(Map(world_.camera(), world_.levels())),
+        vocabulary_(Words(world_)),
+        tracker_({.tracking = options}, world_.camera(), world_.levels(), map_, vocabulary_,
+                 database_) {}
+
+  // The next image, in which the camera turns at `rad_per_s`. Features for which `seems_to_move`
+  // (by their place) are removed with the given static probability.
+  using Suspicion = std::function<bool(const Eigen::Vector2f& px)>;
+  TrackingResult Go(double rad_per_s, const Suspicion& seems_to_move = {},
+                    float probability = 0.15f, float shift_px = 0) {
+    angle_rad_ += rad_per_s * kFrame_s;
+    const TestWorld::View view =
+        world_.Look(TestWorld::PoseOnCircle(angle_rad_), VelocityAt(rad_per_s));
+    FrameFeatures used, removed;
+    for (int i = 0; i < view.features->size(); ++i) {
+      if (!seems_to_move || !seems_to_move(view.features->uv_px[i])) {
+        used.Append(*view.features, i, 1);
+        continue;
+      }
+      removed.Append(*view.features, i, probability);
+      removed.uv_px.back().x() += shift_px;
+      removed.u_right_px.back() += shift_px;
+    }
+    used.BuildGrid(*world_.camera());
+    removed.BuildGrid(*world_.camera());
+    num_removed_ = removed.size();
+    RgbdFrame image;
+    image.id = FrameId(num_frames_);
+    image.time_s = num_frames_++ * kFrame_s;
+    image.camera = world_.camera();
+    image.color = cv::Mat::zeros(image.camera->height, image.camera->width, CV_8U);
+    return tracker_.Track(std::make_shared<const RgbdFrame>(image),
+                          std::make_shared<const FrameFeatures>(used),
+                          std::make_shared<const FrameFeatures>(removed), {});
+  }
+  // How far the camera is from where the first frame's pose and its path put it, m.
+  double Error(const TrackingResult& result) const {
+    if (!result.T_cw) return 1e9;
+    const Rigid3d T_c_first = TestWorld::PoseOnCircle(angle_rad_) *
+                              TestWorld::PoseOnCircle(0).Inverse();
+    return (result.T_cw->Inverse().translation() - T_c_first.Inverse().translation()).norm();
+  }
+  int num_removed() const { return num_removed_; }
+  float LeastStaticProbability() const {
+    float least = 1;
+    const SharedMap::Reader map = map_.Read();
+    for (const MapPointId id : map->PointIds(map->active_map()))
+      least = std::min(least, map->FindPoint(id)->static_weight);
+    return least;
+  }
+
+ private:
+  static Vector6d VelocityAt(double rad_per_s) {
+    const Rigid3d T_later_now =
+        TestWorld::PoseOnCircle(rad_per_s * kFrame_s) * TestWorld::PoseOnCircle(0).Inverse();
+    return T_later_now.Log() / kFrame_s;
+  }
+  static std::shared_ptr<const Vocabulary> Words(TestWorld& world) {
+    std::vector<std::vector<Descriptor>> images;
+    for (const double angle_rad : {0.0, 0.4, 0.8})
+      images.push_back(world.Look(TestWorld::PoseOnCircle(angle_rad)).features->descriptors);
+    return std::make_shared<const Vocabulary>(
+        *TrainVocabulary(images, {.branching = 8, .levels = 3}, {}));
+  }
+
+  TestWorld world_;
+  SharedMap map_;
+  const std::shared_ptr<const Vocabulary> vocabulary_;
+  const KeyFrameDatabase database_;
+  Tracker tracker_;
+  double angle_rad_ = 0;
+  int num_frames_ = 0;
+  int num_removed_ = 0;
+};
+
+bool InLeftThird(const Eigen::Vector2f& px) { return px.x() < 213; }
+
+// Of a camera that turns to and fro, on average, m.
+double ErrorWhenShaken(bool undo_rolling_shutter, double rolling_shutter_s) {
+  TrackingOptions options;
+  options.undo_rolling_shutter = undo_rolling_shutter;
+  Trip trip(options, rolling_shutter_s);
+  constexpr int kFrames = 60;
+  double sum_m = 0;
+  for (int i = 0; i < kFrames; ++i) {
+    const TrackingResult result = trip.Go(0.4 * std::sin(0.3 * i));
+    EXPECT_EQ(result.state, TrackingState::kTracking) << i;
+    sum_m += trip.Error(result);
+  }
+  return sum_m / kFrames;
+}
+
+TEST(Tracker, FollowsAMovingCamera) {
+  EXPECT_LT(ErrorWhenShaken(true, 0), 0.003);
+}
+
+TEST(Tracker, ARollingShutterCostsNothingOnceItIsUndone) {
+  const double undone_m = ErrorWhenShaken(true, 0.023);
+  EXPECT_LT(undone_m, 0.003);
+  EXPECT_GT(ErrorWhenShaken(false, 0.023), 3 * undone_m);
+}
+
+TEST(Tracker, RemovedFeaturesComeBackWhereTheMapKnowsBetter) {
+  Trip trip({});
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(trip.Go(0.1).readmitted.empty());
+  const TrackingResult result = trip.Go(0.1, InLeftThird);
+  EXPECT_GT(result.readmitted.size(), trip.num_removed() / 2u);
+  EXPECT_EQ(std::set<int>(result.readmitted.begin(), result.readmitted.end()).size(),
+            result.readmitted.size());
+  EXPECT_LT(*std::max_element(result.readmitted.begin(), result.readmitted.end()),
+            trip.num_removed());
+  EXPECT_GT(result.num_inliers, result.num_features) << "features are those given as static";
+  EXPECT_GT(trip.LeastStaticProbability(), 0.99f);
+}
+
+TEST(Tracker, FeaturesThatSurelyMoveStayAwayAndTheirPointsAreDoubted) {
+  Trip trip({});
+  for (int i = 0; i < 5; ++i) trip.Go(0.1);
+  EXPECT_TRUE(trip.Go(0.1, InLeftThird, 0.05f).readmitted.empty());
+  EXPECT_LT(trip.LeastStaticProbability(), 0.99f);
+}
+
+TEST(Tracker, RemovedFeaturesThatAreElsewhereStayAway) {
+  Trip trip({});
+  for (int i = 0; i < 5; ++i) trip.Go(0.1);
+  const TrackingResult result = trip.Go(0.1, InLeftThird, 0.15f, 12);
+  EXPECT_LT(result.readmitted.size(), trip.num_removed() / 20u);
+  EXPECT_LT(trip.Error(result), 0.01);
+}
+
+TEST(Tracker, NothingComesBackWhenItIsNotAllowed) {
+  TrackingOptions options;
+  options.readmit_probability = 1;
+  Trip trip(options);
+  for (int i = 0; i < 5; ++i) trip.Go(0.1);
+  EXPECT_TRUE(trip.Go(0.1, InLeftThird).readmitted.empty());
+}
+
+}  // namespace
+}  // namespace msf
