@@ -282,8 +282,8 @@ void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
     const cv::Point cell = work.view.depth.CellOf(px.x(), px.y());
     if (result.mask(cell) != 0) {
       // A detection says that there is an object, not which of the points around it are its own.
-      const bool is_still = work.motion[i] == PointMotion::kStatic &&
-                            !Moves(work.slow_motion[i]) && movers(cell) == 0;
+      const bool is_still = work.motion[i] == PointMotion::kStatic && !Moves(work.slow_motion[i]) &&
+                            movers(cell) == 0;
       result.labels.Set(i, PointReason::kObject, is_still ? kStillOnObject : kOnObject);
     } else if (result.camera_motion_reliable && Moves(work.motion[i])) {
       const PointReason reason =

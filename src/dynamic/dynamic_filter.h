@@ -129,8 +129,8 @@ class DynamicFilter {
 
 // Features with their static probability as weight, in two parts.
 struct SplitFeatures {
-  FrameFeatures used;     // static enough
-  FrameFeatures removed;  // the others
+  FrameFeatures used;             // static enough
+  FrameFeatures removed;          // the others
   std::vector<int> removed_from;  // per removed feature: its index before
 };
 SplitFeatures SplitByProbability(const FrameFeatures& features, const PointLabels& labels,

@@ -200,6 +200,29 @@ TEST(DynamicFilterFull, OfABoxOnlyTheThingIsRemoved) {
       1);
 }
 
+TEST(DynamicFilterFull, OfAPersonOnlyWhatMovesItselfIsSureToMove) {
+  const auto filter = MakeFilter(Mode("full"));
+  const auto look = [&](int number, int shift_px) {
+    const cv::Rect px = Shifted(kThing_px, shift_px);
+    const Detections found = Found(number, {{kPerson, 0.9f, BoxOf(px)}});
+    const Seen seen = Classify(*filter, TexturedFrame(number, 0.1 * number, 0, px), &found);
+    std::vector<float> probabilities;
+    for (int i = 0; i < seen.features.size(); ++i) {
+      const Eigen::Vector2f& at_px = seen.features.image_px[i];
+      if (BoxOf(px, -16).Contains(at_px.x(), at_px.y()))
+        probabilities.push_back(seen.labels().static_probability[i]);
+    }
+    std::nth_element(probabilities.begin(), probabilities.begin() + probabilities.size() / 2,
+                     probabilities.end());
+    return probabilities[probabilities.size() / 2];
+  };
+  const double limit = DynamicOptions().min_static_probability;
+  const float unknown = look(0, 0), still = look(1, 0), moving = look(2, 8);
+  EXPECT_LT(still, limit);
+  EXPECT_GT(still, 2 * moving) << "the map may know better";
+  EXPECT_EQ(unknown, moving) << "what could not be tested is no better than what moves";
+}
+
 TEST(DynamicFilterFull, AChairIsRemovedOnlyOnceItMoves) {
   const auto filter = MakeFilter(Mode("full"));
   const auto look = [&](int number, int shift_px) {

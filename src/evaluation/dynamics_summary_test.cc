@@ -74,10 +74,11 @@ TEST(DynamicsSummary, JsonAndTextSayTheSame) {
 
 TEST(DynamicsSummary, EveryRowOfTheCsvHasAllColumns) {
   const std::string csv = FormatFramesCsv(FourFrames().frames);
-  EXPECT_THAT(csv, HasSubstr("keyframe_id,points_static,points_box,points_object,points_flow,"
-                             "points_depth,points_settled,"
-                             "points_readmitted,mask_share,detection_age,objects,note\n"));
-  EXPECT_THAT(csv, HasSubstr(",60,0,20,0,0,0,0,0.1000,,1,\n"));
+  EXPECT_THAT(csv,
+              HasSubstr("keyframe_id,points_static,points_box,points_object,points_flow,"
+                        "points_depth,points_settled,"
+                        "points_readmitted,points_known,mask_share,detection_age,objects,note\n"));
+  EXPECT_THAT(csv, HasSubstr(",60,0,20,0,0,0,0,0,0.1000,,1,\n"));
   const std::string none = DynamicsCsvCells(nullptr), header = DynamicsCsvHeader();
   EXPECT_EQ(std::count(none.begin(), none.end(), ','),
             std::count(header.begin(), header.end(), ','));

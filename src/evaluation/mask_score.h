@@ -21,7 +21,8 @@ struct TrueActor {
 
 // Points by PointReason. Removed are those of box, object, flow and depth: they are not used.
 // Settled and readmitted points are used with little weight; they count as neither removed nor
-// fully kept, but for KeptShare, which says what is used at all.
+// fully kept, but for KeptShare, which says what is used at all. Known points are used like static
+// ones.
 struct PointTally {
   std::array<int64_t, kNumPointReasons> by_reason{};
 

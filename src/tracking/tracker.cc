@@ -225,8 +225,7 @@ bool Tracker::RefineWithLocalMap(TrackingResult& result) {
     radius_factor = options.local_radius_factor_refined;
   }
   if (tracked) {
-    suspects_ =
-        FindSuspects(context_, local_map_.points(), *frame_.removed, frame_.T_cw, matches_);
+    suspects_ = FindSuspects(context_, local_map_.points(), *frame_.removed, frame_.T_cw, matches_);
     tracked = ReadmitKnown(min_inliers, result);
   }
   result.num_inliers = static_cast<int>(matches_.size());

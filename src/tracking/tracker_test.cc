@@ -57,8 +57,8 @@ class Trip {
   // How far the camera is from where the first frame's pose and its path put it, m.
   double Error(const TrackingResult& result) const {
     if (!result.T_cw) return 1e9;
-    const Rigid3d T_c_first = TestWorld::PoseOnCircle(angle_rad_) *
-                              TestWorld::PoseOnCircle(0).Inverse();
+    const Rigid3d T_c_first =
+        TestWorld::PoseOnCircle(angle_rad_) * TestWorld::PoseOnCircle(0).Inverse();
     return (result.T_cw->Inverse().translation() - T_c_first.Inverse().translation()).norm();
   }
   int num_removed() const { return num_removed_; }
@@ -111,9 +111,7 @@ double ErrorWhenShaken(bool undo_rolling_shutter, double rolling_shutter_s) {
   return sum_m / kFrames;
 }
 
-TEST(Tracker, FollowsAMovingCamera) {
-  EXPECT_LT(ErrorWhenShaken(true, 0), 0.003);
-}
+TEST(Tracker, FollowsAMovingCamera) { EXPECT_LT(ErrorWhenShaken(true, 0), 0.003); }
 
 TEST(Tracker, ARollingShutterCostsNothingOnceItIsUndone) {
   const double undone_m = ErrorWhenShaken(true, 0.023);

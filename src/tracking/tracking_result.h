@@ -27,7 +27,7 @@ struct TrackingResult {
       T_cw;  // world to camera, in the coordinates of map_id at this moment; empty without a pose
   MapId map_id;
   int num_features = 0;
-  int num_inliers = 0;  // map points that agree with the pose
+  int num_inliers = 0;          // map points that agree with the pose
   std::vector<int> readmitted;  // of the removed features, those that are used after all
   KeyFrameId reference;
   Rigid3d T_c_reference;
