@@ -10,8 +10,6 @@
 namespace msf {
 namespace {
 
-constexpr float kTrustedScore = 0.5f;
-
 ImageBox Moved(const ImageBox& box, const Eigen::Vector2f& by) {
   return {box.x0 + by.x(), box.y0 + by.y(), box.x1 + by.x(), box.y1 + by.y()};
 }
@@ -22,10 +20,10 @@ Eigen::Vector2f Centre(const ImageBox& box) {
 
 // A weak detection may be clutter, and so may motion seen once, which the past must be free to
 // confirm as static.
-bool IsEstablished(const ObjectTrack& track) {
+bool IsEstablished(const ObjectTrack& track, double sure_score) {
   switch (track.kind) {
     case ObjectKind::kKnown:
-      return track.best_score >= kTrustedScore;
+      return track.best_score >= sure_score;
     case ObjectKind::kUnknown:
       return track.Removes();
     case ObjectKind::kPotential:
@@ -165,7 +163,7 @@ void DynamicFilter::ExcludePlanes(Work& work) const {
   const BlockRays& rays = background_.rays();
   cv::Mat1b in_box(rays.rows(), rays.cols(), static_cast<uint8_t>(0)), in_mover = in_box.clone();
   for (const ObjectTrack& track : tracks_.tracks()) {
-    if (!IsEstablished(track) || CoversImage(track)) continue;
+    if (!IsEstablished(track, options_.tracks.sure_score) || CoversImage(track)) continue;
     const auto margin = static_cast<float>(MaskOptionsFor(track).box_margin);
     const cv::Rect blocks = BlocksAround(track.box, margin);
     cv::rectangle(in_box, blocks, 255, cv::FILLED);
@@ -197,7 +195,8 @@ void DynamicFilter::GrowMasks(const Work& work) {
     }
     std::optional<float> expected_m;
     if (track.mask.depth_m > 0) expected_m = track.mask.depth_m;
-    const bool trusted = track.confirmed_s == work.frame.time_s && track.score >= kTrustedScore;
+    const bool trusted =
+        track.confirmed_s == work.frame.time_s && track.score >= options_.tracks.sure_score;
     track.mask = MaskInBox(work.view.depth, work.background, track.box, trusted, expected_m,
                            MaskOptionsFor(track));
     if (track.kind == ObjectKind::kUnknown && !track.mask.empty()) track.box = track.mask.box;

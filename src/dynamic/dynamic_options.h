@@ -126,6 +126,8 @@ struct ObjectMaskOptions {
 struct ObjectTrackOptions {
   double min_iou = 0.25;
   double bridge_s = 0.7;
+  double bridge_per_detection_s = 0.1;
+  double sure_score = 0.5;
   double bridge_still_s = 2.5;
   double start_score = 0.25;
   double potential_score = 0.4;
@@ -145,6 +147,9 @@ struct ObjectTrackOptions {
   void Visit(Visitor& visit) {
     visit("min_iou", min_iou, "overlap with which a detection continues a track");
     visit("bridge_s", bridge_s, "an object that is detected no more is followed for so long, s");
+    visit("bridge_per_detection_s", bridge_per_detection_s,
+          "but one that was never found with sure_score only for so long per detection, s");
+    visit("sure_score", sure_score, "score of a detection that leaves no doubt");
     visit("bridge_still_s", bridge_still_s,
           "the same for one that was detected often and still looks the same in depth, s");
     visit("start_score", start_score, "score with which a known dynamic class starts a track");

@@ -234,7 +234,12 @@ double ObjectTracks::BridgeOf(const ObjectTrack& track) const {
   const bool same_depth = std::abs(track.mask.depth_m - track.detected_depth_m) < kSameDepth_m;
   const bool still_there =
       track.kind == ObjectKind::kKnown && track.confirmations >= kOften && same_area && same_depth;
-  return still_there ? options_.bridge_still_s : options_.bridge_s;
+  if (still_there) return options_.bridge_still_s;
+  const bool is_sure =
+      track.kind == ObjectKind::kUnknown || track.best_score >= options_.sure_score;
+  return is_sure ? options_.bridge_s
+                 : std::min(options_.bridge_s, options_.bridge_per_detection_s *
+                                                   static_cast<double>(track.confirmations));
 }
 
 void ObjectTracks::DropLost(double time_s, bool bridging) {

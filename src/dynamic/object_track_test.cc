@@ -251,6 +251,17 @@ TEST_F(Lost, AnObjectIsFollowedForAWhile) {
   EXPECT_TRUE(tracks_.tracks().empty());
 }
 
+TEST_F(Lost, ADoubtfulObjectIsFollowedByTheNumberOfItsDetections) {
+  tracks_.TakeDetections({{kPerson, 0.3f, kHere}}, 1);
+  tracks_.DropLost(1.09, true);
+  EXPECT_EQ(tracks_.tracks().size(), 1u) << "0.1 s for one detection";
+  tracks_.TakeDetections({{kPerson, 0.4f, kHere}}, 1.09);
+  tracks_.DropLost(1.28, true);
+  EXPECT_EQ(tracks_.tracks().size(), 1u);
+  tracks_.DropLost(1.3, true);
+  EXPECT_TRUE(tracks_.tracks().empty());
+}
+
 TEST_F(Lost, WithoutBridgingItIsForgottenAtOnce) {
   tracks_.TakeDetections({{kPerson, 0.9f, kHere}}, 1);
   tracks_.DropLost(1, false);
