@@ -53,12 +53,11 @@ TrackingResult Tracker::Track(RgbdFramePtr image, std::shared_ptr<const FrameFea
   result.frame_id = image->id;
   result.time_s = image->time_s;
   result.num_features = features->size();
-  extracted_ = features;
-  extracted_removed_ = removed;
-  frame_ = Frame{
-      .image = std::move(image), .features = std::move(features), .removed = std::move(removed)};
-  frame_.points.assign(frame_.features->size(), MapPointId());
-  matches_.clear();
+  extracted_ = std::move(features);
+  extracted_removed_ = std::move(removed);
+  frame_ = Frame();
+  frame_.image = std::move(image);
+  BeginAnew();
 
   const bool has_map = state_ == TrackingState::kTracking || state_ == TrackingState::kRecentlyLost;
   bool tracked;
@@ -97,7 +96,6 @@ bool Tracker::StartMap(TrackingResult& result) {
 // after do not go together: then the frame is located once more.
 bool Tracker::Locate(TrackingResult& result) {
   for (int attempt = 1;; ++attempt) {
-    UseExtractedFeatures();
     UndoRollingShutterAt(PredictVelocity());
     epoch_ = map_.Read()->epoch();
     bool located = FindPose(result);
@@ -107,15 +105,15 @@ bool Tracker::Locate(TrackingResult& result) {
       located = RefineWithLocalMap(result);
     }
     if (attempt == kMaxLocateAttempts || map_.Read()->epoch() == epoch_) return located;
-    TakeMatches({});
-    matches_.clear();
+    BeginAnew();
   }
 }
 
-// An attempt before may have changed them.
-void Tracker::UseExtractedFeatures() {
+void Tracker::BeginAnew() {
   frame_.features = extracted_;
   frame_.removed = extracted_removed_;
+  TakeMatches({});
+  matches_.clear();
 }
 
 void Tracker::UndoRollingShutterAt(const std::optional<Vector6d>& velocity) {
@@ -239,6 +237,8 @@ bool Tracker::RefineWithLocalMap(TrackingResult& result) {
 }
 
 bool Tracker::ReadmitKnown(int min_inliers, TrackingResult& result) {
+  result.readmitted.clear();
+  if (suspects_.empty()) return true;
   const FrameFeatures& removed = *frame_.removed;
   auto features = std::make_shared<FrameFeatures>(*frame_.features);
   std::vector<int> added;  // the removed feature behind each one that is added
@@ -251,7 +251,6 @@ bool Tracker::ReadmitKnown(int min_inliers, TrackingResult& result) {
     features->Append(removed, feature, probability);
     added.push_back(feature);
   }
-  result.readmitted.clear();
   if (added.empty()) return true;
   const bool tracked = OptimizeFramePose(context_, *features, min_inliers, matches_, frame_.T_cw);
   const int num_own = features->size() - static_cast<int>(added.size());

@@ -51,7 +51,8 @@ class Tracker {
   bool RefineWithLocalMap(TrackingResult& result);
   // What was removed as moving comes back where the map has a static point that looks like it.
   bool ReadmitKnown(int min_inliers, TrackingResult& result);
-  void UseExtractedFeatures();
+  // Takes the frame as it came.
+  void BeginAnew();
   // Moves the features to where they would be without a rolling shutter, if the velocity is known.
   void UndoRollingShutterAt(const std::optional<Vector6d>& velocity);
   // Twist per second by the last two poses, and by the present one and the last.

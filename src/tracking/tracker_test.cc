@@ -21,8 +21,7 @@ class Trip {
       : world_(1, 5000, rolling_shutter_s),
         map_(Map(world_.camera(), world_.levels())),
         vocabulary_(Words(world_)),
-        tracker_({.tracking = options}, world_.camera(), world_.levels(), map_, vocabulary_,
-                 database_) {}
+        tracker_(With(options), world_.camera(), world_.levels(), map_, vocabulary_, database_) {}
 
   // The next image, in which the camera turns at `rad_per_s`. Features for which `seems_to_move`
   // (by their place) are removed with the given static probability.
@@ -71,6 +70,11 @@ class Trip {
   }
 
  private:
+  static Tracker::Options With(const TrackingOptions& tracking) {
+    Tracker::Options options;
+    options.tracking = tracking;
+    return options;
+  }
   static Vector6d VelocityAt(double rad_per_s) {
     const Rigid3d T_later_now =
         TestWorld::PoseOnCircle(rad_per_s * kFrame_s) * TestWorld::PoseOnCircle(0).Inverse();
