@@ -156,21 +156,26 @@ void DynamicFilter::ClassifyByMotion(Work& work, const Detections* detections,
 void DynamicFilter::TakeDetections(const Detections& detections, Work& work) {
   if (last_detections_.valid() && detections.frame <= last_detections_) return;
   last_detections_ = detections.frame;
-  work.detections = detections.frame == work.frame.id ? Sane(detections.objects, camera_)
-                                                      : CarryToNow(detections, work);
-  tracks_.TakeDetections(work.detections, work.frame.time_s);
+  double age_s = 0;
+  if (detections.frame == work.frame.id) {
+    work.detections = Sane(detections.objects, camera_);
+  } else {
+    const auto then = std::find_if(past_.begin(), past_.end(), [&](const PastView& view) {
+      return view.frame == detections.frame;
+    });
+    if (then == past_.end()) return;  // too old to be placed
+    work.detections = CarryToNow(detections, *then, work);
+    age_s = work.frame.time_s - then->time_s;
+  }
+  tracks_.TakeDetections(work.detections, work.frame.time_s, age_s);
 }
 
-std::vector<Detection> DynamicFilter::CarryToNow(const Detections& detections,
+std::vector<Detection> DynamicFilter::CarryToNow(const Detections& detections, const PastView& then,
                                                  const Work& work) const {
   std::vector<Detection> carried;
-  const auto then = std::find_if(past_.begin(), past_.end(), [&](const PastView& view) {
-    return view.frame == detections.frame;
-  });
-  if (then == past_.end()) return carried;  // too old to be placed
   for (Detection detection : Sane(detections.objects, camera_)) {
-    if (!tracks_.MayTake(detection, then->frame)) continue;
-    detection.box = CarryBox(detection.box, *then, work);
+    if (!tracks_.MayTake(detection, then.frame)) continue;
+    detection.box = CarryBox(detection.box, then, work);
     carried.push_back(detection);
   }
   return Sane(carried, camera_);

@@ -86,7 +86,8 @@ class DynamicFilter {
                         const Rigid3d& T_last_now_predicted, DynamicResult& result);
 
   void TakeDetections(const Detections& detections, Work& work);
-  std::vector<Detection> CarryToNow(const Detections& detections, const Work& work) const;
+  std::vector<Detection> CarryToNow(const Detections& detections, const PastView& then,
+                                    const Work& work) const;
   ImageBox CarryBox(const ImageBox& box, const PastView& then, const Work& work) const;
   std::vector<Eigen::Vector2f> ShiftsSince(const PastView& then, const ImageBox& box,
                                            const ObjectMask& mask, const Eigen::Vector2f& guess,

@@ -148,7 +148,8 @@ struct ObjectTrackOptions {
     visit("min_iou", min_iou, "overlap with which a detection continues a track");
     visit("bridge_s", bridge_s, "an object that is detected no more is followed for so long, s");
     visit("bridge_per_detection_s", bridge_per_detection_s,
-          "but one that was never found with sure_score only for so long per detection, s");
+          "but one that was never found with sure_score only for so long per detection, and for as "
+          "long as detections take to come, s");
     visit("sure_score", sure_score, "score of a detection that leaves no doubt");
     visit("bridge_still_s", bridge_still_s,
           "the same for one that was detected often and still looks the same in depth, s");

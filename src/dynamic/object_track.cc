@@ -107,7 +107,8 @@ bool ObjectTracks::MayTake(const Detection& detection, FrameId frame) const {
   });
 }
 
-void ObjectTracks::TakeDetections(const std::vector<Detection>& detections, double time_s) {
+void ObjectTracks::TakeDetections(const std::vector<Detection>& detections, double time_s,
+                                  double age_s) {
   std::vector<uint8_t> taken(tracks_.size(), 0);
   for (const Detection& detection : detections) {
     const std::optional<ObjectKind> kind = roles_.KindOf(detection.class_id);
@@ -128,6 +129,7 @@ void ObjectTracks::TakeDetections(const std::vector<Detection>& detections, doub
     track->best_score = std::max(track->best_score, detection.score);
     track->box = detection.box;
     track->confirmed_s = time_s;
+    track->detection_age_s = age_s;
     ++track->confirmations;
   }
   // A track that only bridges where another one was detected has been mistaken.
@@ -235,11 +237,12 @@ double ObjectTracks::BridgeOf(const ObjectTrack& track) const {
   const bool still_there =
       track.kind == ObjectKind::kKnown && track.confirmations >= kOften && same_area && same_depth;
   if (still_there) return options_.bridge_still_s;
-  const bool is_sure =
-      track.kind == ObjectKind::kUnknown || track.best_score >= options_.sure_score;
-  return is_sure ? options_.bridge_s
-                 : std::min(options_.bridge_s, options_.bridge_per_detection_s *
-                                                   static_cast<double>(track.confirmations));
+  if (track.kind == ObjectKind::kUnknown || track.best_score >= options_.sure_score)
+    return options_.bridge_s;
+  // Late detections are rarer where they are hard to place.
+  const double earned_s =
+      track.detection_age_s + options_.bridge_per_detection_s * track.confirmations;
+  return std::min(options_.bridge_s, earned_s);
 }
 
 void ObjectTracks::DropLost(double time_s, bool bridging) {

@@ -39,6 +39,7 @@ struct ObjectTrack {
   Eigen::Vector2f own_velocity_px_s =
       Eigen::Vector2f::Zero();  // beyond what the camera's motion does to it
   double confirmed_s = 0;       // last detection, or last time its motion was seen
+  double detection_age_s = 0;   // of the last detection when it came
   double resting_since_s = 0;
   int confirmations = 0;
   MotionEvidence evidence;
@@ -62,8 +63,9 @@ class ObjectTracks {
   const ClassRoles& roles() const { return roles_; }
 
   // Boxes in pixels of the present image; best first. A box continues the track of its kind that it
-  // overlaps most; what is left starts new tracks where the score allows it.
-  void TakeDetections(const std::vector<Detection>& detections, double time_s);
+  // overlaps most; what is left starts new tracks where the score allows it. `age_s`: of the image
+  // in which they were found.
+  void TakeDetections(const std::vector<Detection>& detections, double time_s, double age_s = 0);
   // Whether TakeDetections() could use one that belongs to the image `frame`.
   bool MayTake(const Detection& detection, FrameId frame) const;
   // A cluster of moving points outside all masks: confirms the mover there or starts one.

@@ -262,6 +262,14 @@ TEST_F(Lost, ADoubtfulObjectIsFollowedByTheNumberOfItsDetections) {
   EXPECT_TRUE(tracks_.tracks().empty());
 }
 
+TEST_F(Lost, ADoubtfulObjectOfALateDetectionIsFollowedUntilTheNextOneMayCome) {
+  tracks_.TakeDetections({{kPerson, 0.3f, kHere}}, 1, 0.33);
+  tracks_.DropLost(1.42, true);
+  EXPECT_EQ(tracks_.tracks().size(), 1u);
+  tracks_.DropLost(1.44, true);
+  EXPECT_TRUE(tracks_.tracks().empty());
+}
+
 TEST_F(Lost, WithoutBridgingItIsForgottenAtOnce) {
   tracks_.TakeDetections({{kPerson, 0.9f, kHere}}, 1);
   tracks_.DropLost(1, false);
