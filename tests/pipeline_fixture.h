@@ -14,8 +14,8 @@
 
 namespace msf {
 
-// As `msf-slam run` has it. The thread sanitizer would take what the pool's threads, which it cannot
-// see into, hand over for races.
+// As `msf-slam run` has it. The thread sanitizer would take what the pool's threads, which it
+// cannot see into, hand over for races.
 inline const bool kOpenCvHasOneThread = [] {
   cv::setNumThreads(1);
   return true;
