@@ -130,23 +130,22 @@ StatusOr<TrackingResult> System::Impl::Track(const RgbdFramePtr& frame) {
 
   StageTimings timings_ms;
   if (detection_source_) OfferToDetector(frame, timings_ms);
-  FrameFeatures features = Extract(*frame, timings_ms);
+  const auto features = std::make_shared<const FrameFeatures>(Extract(*frame, timings_ms));
+  std::shared_ptr<const FrameFeatures> used = features;
   DynamicResult dynamics;
   SplitFeatures split;
   if (filter_) {
     const StageTimer timer(timings_ms, "dynamic");
-    dynamics = Classify(frame, features);
-    split = SplitByProbability(features, dynamics.labels, options_.dynamic.min_static_probability,
+    dynamics = Classify(frame, *features);
+    split = SplitByProbability(*features, dynamics.labels, options_.dynamic.min_static_probability,
                                *camera_);
-  } else {
-    split.used = std::move(features);
+    used = std::make_shared<const FrameFeatures>(std::move(split.used));
   }
   TrackingResult result;
   {
     const StageTimer timer(timings_ms, "tracking");
-    result =
-        tracker_.Track(frame, std::make_shared<const FrameFeatures>(std::move(split.used)),
-                       std::make_shared<const FrameFeatures>(std::move(split.removed)), Load());
+    result = tracker_.Track(
+        frame, used, std::make_shared<const FrameFeatures>(std::move(split.removed)), Load());
   }
   for (const auto& [stage, ms] : result.timings_ms) timings_ms["tracking." + stage] = ms;
   timings_ms["total"] = 0;
@@ -158,7 +157,7 @@ StatusOr<TrackingResult> System::Impl::Track(const RgbdFramePtr& frame) {
     TellFilter(result);
     for (const int k : result.readmitted)
       dynamics.labels.Set(split.removed_from[k], PointReason::kKnown, 1);
-    for (const auto& observer : observers_) observer->OnDynamics(*frame, features, dynamics);
+    for (const auto& observer : observers_) observer->OnDynamics(*frame, *features, dynamics);
   }
   recorder_.Record(result);
   if (result.new_keyframe) HandOn(*result.new_keyframe);
