@@ -239,7 +239,7 @@ double ObjectTracks::BridgeOf(const ObjectTrack& track) const {
   if (still_there) return options_.bridge_still_s;
   if (track.kind == ObjectKind::kUnknown || track.best_score >= options_.sure_score)
     return options_.bridge_s;
-  // Late detections are rarer where they are hard to place.
+  // The next one may come as late as this one did.
   const double earned_s =
       track.detection_age_s + options_.bridge_per_detection_s * track.confirmations;
   return std::min(options_.bridge_s, earned_s);

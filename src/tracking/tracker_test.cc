@@ -151,6 +151,15 @@ TEST(Tracker, RemovedFeaturesThatAreElsewhereStayAway) {
   EXPECT_LT(trip.Error(result), 0.01);
 }
 
+TEST(TrackingOptions, RefuseWhatIsNoProbability) {
+  EXPECT_TRUE(TrackingOptions().Check().ok());
+  for (const double no_probability : {-0.1, 1.1, std::nan("")}) {
+    TrackingOptions options;
+    options.readmit_probability = no_probability;
+    EXPECT_FALSE(options.Check().ok()) << no_probability;
+  }
+}
+
 TEST(Tracker, NothingComesBackWhenItIsNotAllowed) {
   TrackingOptions options;
   options.readmit_probability = 1;

@@ -15,6 +15,11 @@ Status TrackingOptions::Check() const {
   if (local_search_rounds < 1)
     return Status::Error("tracking.local_search_rounds must be at least 1");
   if (recently_lost_s < 0) return Status::Error("tracking.recently_lost_s must not be negative");
+  for (const double probability :
+       {min_static_probability, readmit_probability, readmit_point_probability}) {
+    if (!(probability >= 0 && probability <= 1))
+      return Status::Error("tracking: probabilities must be from 0 to 1");
+  }
   if (keyframe.max_interval_s <= 0)
     return Status::Error("tracking.keyframe.max_interval_s must be positive");
   return pose.Check();
