@@ -1,4 +1,5 @@
 // msf-slam detector export: weights of a training as an ONNX file.
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -24,6 +25,15 @@ struct ExportArguments {
   int height = 640;
 };
 
+Status WriteOnnx(const Network& network, const ExportArguments& arguments) {
+  OnnxOptions options;
+  options.form = arguments.single_output ? OnnxForm::kSingleOutput : OnnxForm::kRawHeads;
+  options.width = arguments.width;
+  options.height = arguments.height;
+  options.half = !arguments.full_precision;
+  return ExportOnnx(network.graph(), network.State(), options, arguments.out);
+}
+
 void Export(const ExportArguments& arguments) {
   const ModelConfig config = Require(LoadModelConfig(arguments.model));
   NamedTensors weights = Require(LoadTensors(arguments.weights));
@@ -33,12 +43,11 @@ void Export(const ExportArguments& arguments) {
   }
   Network network(BuildModelGraph(config), 0);
   Require(network.Load(Require(AdaptWeights(weights, network.graph()))));
-  OnnxOptions options;
-  options.form = arguments.single_output ? OnnxForm::kSingleOutput : OnnxForm::kRawHeads;
-  options.width = arguments.width;
-  options.height = arguments.height;
-  options.half = !arguments.full_precision;
-  Require(ExportOnnx(network.graph(), network.State(), options, arguments.out));
+  if (std::filesystem::path(arguments.out).extension() == ".pt") {
+    Require(SaveTensors(arguments.out, network.State()));
+  } else {
+    Require(WriteOnnx(network, arguments));
+  }
   std::cout << arguments.out << ": " << config.classes.size() << " classes, "
             << CountParameters(network.graph()) << " parameters\n";
 }
@@ -54,7 +63,12 @@ void AddDetectorExportCommand(CLI::App& app) {
       "yolov8n, yolov8n_msf, yolov8n_fpn, yolov8n_hrnet, yolov8n_coco or a YAML file");
   command->add_option("--weights", arguments->weights, "weights.pt of a training, or COCO weights")
       ->required();
-  command->add_option("--out", arguments->out, "ONNX file to write")->required();
+  command
+      ->add_option(
+          "--out", arguments->out,
+          "ONNX file to write; a name that ends in .pt: the (blended) weights, to start another "
+          "training from")
+      ->required();
   command->add_option("--blend", arguments->blend,
                       "weights.pt that the training started from: keeps more of what they could do "
                       "that the training pictures do not show");
