@@ -62,15 +62,15 @@ struct Sample {
   Eigen::Vector3f point, normal;
 };
 
-// Every other block outside the boxes.
+// Every other block.
 std::vector<Sample> SamplesOutside(const CoarseDepth& depth, const BlockRays& rays,
-                                   const cv::Mat1b& in_box) {
+                                   const cv::Mat1b& excluded) {
   constexpr int kStep = 2, kReach = 4;
   std::vector<Sample> samples;
   for (int r = 0; r < rays.rows(); r += kStep) {
     for (int c = 0; c < rays.cols(); c += kStep) {
       const Eigen::Vector3f p = rays.Point(depth, r, c);
-      if (p.z() > 0 && in_box(r, c) == 0)
+      if (p.z() > 0 && excluded(r, c) == 0)
         samples.push_back({p, NormalAt(depth, rays, r, c, kReach)});
     }
   }
@@ -101,27 +101,35 @@ std::optional<Plane> BestPlane(const std::vector<Sample>& samples,
 }
 
 // Blocks on the plane whose surface faces its way.
-void MarkPlane(const CoarseDepth& depth, const BlockRays& rays, const Plane& plane,
-               const PlaneOptions& options, cv::Mat1b& on_plane) {
+cv::Mat1b BlocksOn(const Plane& plane, const CoarseDepth& depth, const BlockRays& rays,
+                   const PlaneOptions& options) {
   constexpr int kReach = 2;
   constexpr float kFacing = 0.8f;  // cosine
+  cv::Mat1b on_plane(rays.rows(), rays.cols(), static_cast<uint8_t>(0));
   for (int r = 0; r < rays.rows(); ++r) {
     for (int c = 0; c < rays.cols(); ++c) {
-      if (on_plane(r, c) != 0 || !Lies(rays.Point(depth, r, c), plane, options)) continue;
+      if (!Lies(rays.Point(depth, r, c), plane, options)) continue;
       if (std::abs(NormalAt(depth, rays, r, c, kReach).dot(plane.normal)) > kFacing)
         on_plane(r, c) = 255;
     }
   }
+  return on_plane;
 }
 
-// Drops the pieces that lie in boxes as a whole.
-void KeepPiecesFromOutside(const cv::Mat1b& in_box, cv::Mat1b& on_plane) {
+// A back may be flat, and fill a box.
+bool IsPartOfObject(const cv::Mat1b& on_plane, const cv::Mat1b& in_mask) {
+  constexpr double kMost = 0.6;
+  return cv::countNonZero(on_plane & in_mask) > kMost * cv::countNonZero(on_plane);
+}
+
+// Drops the pieces that are excluded as a whole.
+void KeepPiecesFromOutside(const cv::Mat1b& excluded, cv::Mat1b& on_plane) {
   cv::Mat1i pieces;
   const int count = cv::connectedComponents(on_plane, pieces, 4, CV_32S);
   std::vector<uint8_t> outside(count, 0);
   for (int r = 0; r < pieces.rows; ++r) {
     for (int c = 0; c < pieces.cols; ++c) {
-      if (in_box(r, c) == 0) outside[pieces(r, c)] = 1;
+      if (excluded(r, c) == 0) outside[pieces(r, c)] = 1;
     }
   }
   for (int r = 0; r < pieces.rows; ++r) {
@@ -133,21 +141,23 @@ void KeepPiecesFromOutside(const cv::Mat1b& in_box, cv::Mat1b& on_plane) {
 
 }  // namespace
 
-cv::Mat1b FindPlaneBlocks(const CoarseDepth& depth, const BlockRays& rays, const cv::Mat1b& in_box,
+cv::Mat1b FindPlaneBlocks(const CoarseDepth& depth, const BlockRays& rays,
+                          const cv::Mat1b& excluded, const cv::Mat1b& in_mask,
                           const PlaneOptions& options, uint64_t seed) {
   cv::Mat1b on_plane(rays.rows(), rays.cols(), static_cast<uint8_t>(0));
   std::mt19937_64 random(seed);
-  const std::vector<Sample> samples = SamplesOutside(depth, rays, in_box);
+  const std::vector<Sample> samples = SamplesOutside(depth, rays, excluded);
   std::vector<Eigen::Vector3f> points;
   points.reserve(samples.size());
   for (const Sample& sample : samples) points.push_back(sample.point);
   for (int k = 0; k < options.max_planes && !points.empty(); ++k) {
     const std::optional<Plane> plane = BestPlane(samples, points, options, random);
     if (!plane) break;
-    MarkPlane(depth, rays, *plane, options, on_plane);
+    const cv::Mat1b blocks = BlocksOn(*plane, depth, rays, options);
+    if (!IsPartOfObject(blocks, in_mask)) on_plane |= blocks;
     std::erase_if(points, [&](const Eigen::Vector3f& p) { return Lies(p, *plane, options); });
   }
-  KeepPiecesFromOutside(in_box, on_plane);
+  KeepPiecesFromOutside(excluded, on_plane);
   return on_plane;
 }
 

@@ -7,10 +7,12 @@
 
 namespace msf {
 
-// Blocks on planes: 255, others 0. Those where `in_box` is 255 make none and must hang together
-// with a part of the plane where it is not: a box may hold something flat that moves. Consensus
-// over samples decided by `seed`.
-cv::Mat1b FindPlaneBlocks(const CoarseDepth& depth, const BlockRays& rays, const cv::Mat1b& in_box,
+// Blocks on planes: 255, others 0. Those where `excluded` is 255 make none and must hang together
+// with a part of the plane where it is not: a box may hold something flat that moves. Nor is a
+// plane what lies for the most part where `in_mask` is 255, in what was an object a moment ago.
+// Consensus over samples decided by `seed`.
+cv::Mat1b FindPlaneBlocks(const CoarseDepth& depth, const BlockRays& rays,
+                          const cv::Mat1b& excluded, const cv::Mat1b& in_mask,
                           const PlaneOptions& options, uint64_t seed);
 
 }  // namespace msf

@@ -36,7 +36,8 @@ class BackgroundPlanesTest : public ::testing::Test {
                  const PlaneOptions& options = {}) const {
     cv::Mat1b in_box(rays_.rows(), rays_.cols(), static_cast<uint8_t>(0));
     in_box(cv::Rect(box_px.tl() / kBlock_px, box_px.br() / kBlock_px)) = 255;
-    return FindPlaneBlocks(depth, rays_, in_box, options, 1);
+    const cv::Mat1b no_mask(in_box.size(), static_cast<uint8_t>(0));
+    return FindPlaneBlocks(depth, rays_, in_box, no_mask, options, 1);
   }
   static bool At(const cv::Mat1b& blocks, int x_px, int y_px) {
     return blocks(y_px / kBlock_px, x_px / kBlock_px) != 0;
@@ -58,6 +59,18 @@ TEST_F(BackgroundPlanesTest, WhatIsFlatInTheBoxAloneIsNoPlane) {
   const cv::Mat1b blocks = Find(depth, box);
   EXPECT_FALSE(At(blocks, 320, 240));
   EXPECT_TRUE(At(blocks, 40, 40)) << "the wall";
+}
+
+TEST_F(BackgroundPlanesTest, WhatWasAnObjectIsNoPlaneHoweverFlat) {
+  const cv::Rect back(200, 160, 240, 160);
+  const CoarseDepth depth(DepthFrame(3, {{back, 2.0f}}));
+  const cv::Mat1b nothing(rays_.rows(), rays_.cols(), static_cast<uint8_t>(0));
+  EXPECT_TRUE(At(FindPlaneBlocks(depth, rays_, nothing, nothing, {}, 1), 320, 240));
+  cv::Mat1b in_mask = nothing.clone();
+  in_mask(cv::Rect(back.tl() / kBlock_px, back.br() / kBlock_px)) = 255;
+  const cv::Mat1b blocks = FindPlaneBlocks(depth, rays_, nothing, in_mask, {}, 1);
+  EXPECT_FALSE(At(blocks, 320, 240));
+  EXPECT_TRUE(At(blocks, 40, 40)) << "the wall behind";
 }
 
 TEST_F(BackgroundPlanesTest, WithoutDepthOrOptionsThereIsNone) {

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "dynamic/point_motion.h"
+#include "feature/landmark.h"
 #include "optimization/pose_optimizer.h"
 
 namespace msf {
@@ -21,6 +22,12 @@ struct CameraMotion {
 // with it, RANSAC (seeded) first.
 CameraMotion EstimateCameraMotion(const Camera& camera, const ScaleLevels& levels,
                                   const FrameFeatures& features, std::span<const int> which,
+                                  std::span<const FlowPoint> flow,
+                                  const Rigid3d& T_past_now_predicted, uint64_t seed);
+
+// The same from what the past image showed of the map's trusted part: `flow` says where the
+// landmarks are now. Reliable where at least 12 were found and most of them agree.
+CameraMotion EstimateCameraMotion(const Camera& camera, std::span<const Landmark> landmarks,
                                   std::span<const FlowPoint> flow,
                                   const Rigid3d& T_past_now_predicted, uint64_t seed);
 

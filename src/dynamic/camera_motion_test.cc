@@ -86,6 +86,56 @@ TEST_F(CameraMotionTest, WithTooFewPointsItIsThePrediction) {
   EXPECT_EQ(motion.T_past_now.translation(), predicted.translation());
 }
 
+TEST_F(CameraMotionTest, WhatAFewPointsAmongManyAgreeOnIsNoMotionOfTheCamera) {
+  AddStatic(20);
+  AddWild(100);
+  const CameraMotion motion = Estimate(T_past_now_);
+  EXPECT_FALSE(motion.reliable);
+}
+
+// Landmarks of the past image, seen now.
+class LandmarkMotionTest : public CameraMotionTest {
+ protected:
+  void Add(int count, const Eigen::Vector2f& moved_px = {0, 0}) {
+    for (int i = 0; i < count; ++i) {
+      const Eigen::Vector2f px(Uniform(60, 580), Uniform(60, 420));
+      landmarks_.push_back({px, TestCamera()->Unproject(px.cast<double>(), Uniform(1.5f, 4))});
+      const Eigen::Vector3d p_now = T_past_now_.Inverse() * landmarks_.back().p_c;
+      flow_.push_back({TestCamera()->Project(p_now).cast<float>() + moved_px, true});
+    }
+  }
+  CameraMotion Estimate(const Rigid3d& predicted) {
+    return EstimateCameraMotion(*TestCamera(), landmarks_, flow_, predicted, 3);
+  }
+  std::vector<Landmark> landmarks_;
+};
+
+TEST_F(LandmarkMotionTest, TellTheCamerasMotion) {
+  Add(40);
+  Add(15, {20, 5});
+  const CameraMotion motion = Estimate({});
+  EXPECT_TRUE(motion.reliable);
+  EXPECT_EQ(motion.num_points, 55);
+  EXPECT_EQ(motion.num_inliers, 40);
+  EXPECT_LT(ErrorOf(motion), 1e-3);
+}
+
+TEST_F(LandmarkMotionTest, TellNothingWhenTheyAreFewOrDisagree) {
+  const Rigid3d predicted = Rigid3d::Exp((Vector6d() << 0.1, 0, 0, 0, 0, 0).finished());
+  Add(11);
+  EXPECT_FALSE(Estimate(predicted).reliable);
+  EXPECT_EQ(Estimate(predicted).T_past_now.translation(), predicted.translation());
+  Add(1);
+  EXPECT_TRUE(Estimate(predicted).reliable);
+  flow_[3].found = false;
+  EXPECT_FALSE(Estimate(predicted).reliable);
+  landmarks_.clear();
+  flow_.clear();
+  Add(40);
+  for (FlowPoint& point : flow_) point.image_px = {Uniform(60, 580), Uniform(60, 420)};
+  EXPECT_FALSE(Estimate(predicted).reliable);
+}
+
 TEST_F(CameraMotionTest, WithoutAgreementItIsThePrediction) {
   AddWild(40);
   const CameraMotion motion = Estimate({});

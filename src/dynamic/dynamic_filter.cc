@@ -187,10 +187,48 @@ void DynamicFilter::FollowCamera(const Rigid3d& T_last_now_predicted, Work& work
                                  DynamicResult& result) {
   work.flow.assign(work.all.size(), {});
   if (past_.empty()) return;
+  // What the map has long held as static tells the camera's motion even where people fill the
+  // image.
+  CameraMotion motion = MotionByLandmarks(T_last_now_predicted, work);
+  if (!motion.reliable) {
+    const CameraMotion from_rest = MotionByLandmarks({}, work);
+    if (from_rest.reliable) motion = from_rest;
+  }
+  if (motion.reliable) result.T_now_last = motion.T_past_now.Inverse();
   const std::vector<Eigen::Vector2f> guesses =
-      PredictInPast(camera_, work.features, work.all, T_last_now_predicted);
+      PredictInPast(camera_, work.features, work.all, motion.T_past_now);
   work.flow = FollowPoints(work.view.image, past_.back().image, work.features.image_px, guesses,
                            flow_options_);
+  if (!motion.reliable) motion = MotionByFeatures(T_last_now_predicted, work);
+  result.camera_motion_reliable = motion.reliable;
+  // What took coordinates of the last camera into the past now takes those of this one.
+  const Rigid3d T_last_now = options_.compensate_camera_motion ? motion.T_past_now : Rigid3d();
+  const Vector6d twist = T_last_now.Log();
+  for (PastView& view : past_) {
+    view.T_past_now = view.T_past_now * T_last_now;
+    view.unsteadiness = twist - last_motion_;
+  }
+  last_motion_ = twist;
+  steady_ = twist.tail<3>().norm() * camera_.fx < options_.background.max_turn_px;
+}
+
+CameraMotion DynamicFilter::MotionByLandmarks(const Rigid3d& T_last_now_predicted,
+                                              const Work& work) const {
+  std::vector<Eigen::Vector2f> points, guesses;
+  const Rigid3d T_now_last = T_last_now_predicted.Inverse();
+  for (const Landmark& landmark : landmarks_) {
+    const Eigen::Vector3d p = T_now_last * landmark.p_c;
+    points.push_back(landmark.image_px);
+    guesses.push_back(p.z() > 0 ? camera_.Distort(camera_.Project(p)).cast<float>().eval()
+                                : landmark.image_px);
+  }
+  const std::vector<FlowPoint> flow =
+      FollowPoints(past_.back().image, work.view.image, points, guesses, flow_options_);
+  return EstimateCameraMotion(camera_, landmarks_, flow, T_last_now_predicted, SeedFor(work));
+}
+
+CameraMotion DynamicFilter::MotionByFeatures(const Rigid3d& T_last_now_predicted,
+                                             const Work& work) const {
   // Points that were on a person or the like do not take part. Those on movers of other classes do:
   // they are movers only by the camera's motion, which must not depend on them in turn.
   std::vector<int> still;
@@ -205,19 +243,8 @@ void DynamicFilter::FollowCamera(const Rigid3d& T_last_now_predicted, Work& work
     still.push_back(i);
     flow.push_back(work.flow[i]);
   }
-  const CameraMotion motion =
-      EstimateCameraMotion(camera_, levels_, work.features, still, flow, T_last_now_predicted,
-                           seed_ + static_cast<uint64_t>(work.frame.id.value()));
-  result.camera_motion_reliable = motion.reliable;
-  // What took coordinates of the last camera into the past now takes those of this one.
-  const Rigid3d T_last_now = options_.compensate_camera_motion ? motion.T_past_now : Rigid3d();
-  const Vector6d twist = T_last_now.Log();
-  for (PastView& view : past_) {
-    view.T_past_now = view.T_past_now * T_last_now;
-    view.unsteadiness = twist - last_motion_;
-  }
-  last_motion_ = twist;
-  steady_ = twist.tail<3>().norm() * camera_.fx < options_.background.max_turn_px;
+  return EstimateCameraMotion(camera_, levels_, work.features, still, flow, T_last_now_predicted,
+                              SeedFor(work));
 }
 
 const PastView* DynamicFilter::ViewBefore(double time_s) const {
@@ -261,11 +288,17 @@ void DynamicFilter::TestSlowMotions(Work& work) const {
 
 // --- Labels
 
-// Nothing covers the whole image, unless it is seen to move.
+// Nothing covers most of the image, unless it is seen to move.
 bool DynamicFilter::IsCredible(const ObjectTrack& track) const {
-  const double most = options_.mask.max_image_share;
-  if (track.mask.area > most * static_cast<double>(track.mask.cells.total())) return false;
-  return !CoversImage(track) || track.evidence.SpeaksForMotion();
+  if (MaskShare(track) > options_.mask.max_image_share) return false;
+  const bool is_large = track.kind == ObjectKind::kUnknown
+                            ? MaskShare(track) > options_.mask.max_mover_share
+                            : CoversImage(track);
+  return !is_large || track.evidence.SpeaksForMotion();
+}
+
+double DynamicFilter::MaskShare(const ObjectTrack& track) const {
+  return static_cast<double>(track.mask.area) / static_cast<double>(track.mask.cells.total());
 }
 
 bool DynamicFilter::CoversImage(const ObjectTrack& track) const {
@@ -359,7 +392,9 @@ void DynamicFilter::Remember(Work& work, const DynamicResult& result) {
   if (past_.size() > static_cast<size_t>(options_.history_frames)) past_.pop_front();
 }
 
-void DynamicFilter::TakePose(const std::optional<Rigid3d>& T_cw, bool same_world) {
+void DynamicFilter::TakePose(const std::optional<Rigid3d>& T_cw, bool same_world,
+                             std::vector<Landmark> landmarks) {
+  landmarks_ = std::move(landmarks);
   T_cw_last_ = T_cw;
   if (!same_world) {
     // The camera is where it was, only the numbers have changed.

@@ -37,6 +37,8 @@ struct DynamicResult {
   double mask_share = 0;   // of the image
   int detection_age = -1;  // frames between the newest detections and this frame; -1: none yet
   bool camera_motion_reliable = false;
+  // The motion since the last frame, where that frame's landmarks tell it.
+  std::optional<Rigid3d> T_now_last;
 };
 
 // Single-threaded. Frames come in the order of time.
@@ -54,8 +56,10 @@ class DynamicFilter {
                          const Rigid3d& T_last_now_predicted, const Detections* detections);
 
   // Where tracking has found the camera for the frame that was classified last; nothing when it is
-  // lost. `same_world`: the map was not corrected since the frame before.
-  void TakePose(const std::optional<Rigid3d>& T_cw, bool same_world);
+  // lost. `same_world`: the map was not corrected since the frame before. `landmarks`: what that
+  // frame shows of the map's trusted part (may be empty).
+  void TakePose(const std::optional<Rigid3d>& T_cw, bool same_world,
+                std::vector<Landmark> landmarks);
 
   // How many times as many points as usual the next image needs so that the static part keeps its
   // budget.
@@ -80,6 +84,9 @@ class DynamicFilter {
     std::vector<Detection> detections;     // in place for this frame
   };
 
+  uint64_t SeedFor(const Work& work) const {
+    return seed_ + static_cast<uint64_t>(work.frame.id.value());
+  }
   void DropInBoxes(const Work& work, DynamicResult& result) const;
   void DropByRawFlow(const Work& work, DynamicResult& result) const;
   void ClassifyByMotion(Work& work, const Detections* detections,
@@ -93,16 +100,20 @@ class DynamicFilter {
                                            const ObjectMask& mask, const Eigen::Vector2f& guess,
                                            const Work& work) const;
   void FollowCamera(const Rigid3d& T_last_now_predicted, Work& work, DynamicResult& result);
+  CameraMotion MotionByLandmarks(const Rigid3d& T_last_now_predicted, const Work& work) const;
+  CameraMotion MotionByFeatures(const Rigid3d& T_last_now_predicted, const Work& work) const;
   void TestMotions(Work& work) const;
   void TestSlowMotions(Work& work) const;
   void MoveTracks(const Work& work);
   void ExcludePlanes(Work& work) const;
+  cv::Mat1b BlocksInMasks() const;
   void GrowMasks(const Work& work);
   ObjectMaskOptions MaskOptionsFor(const ObjectTrack& track) const;
   void FindMovers(const Work& work);
   void FindIntruders(const Work& work);
   void GatherEvidence(const Work& work);
   bool IsCredible(const ObjectTrack& track) const;
+  double MaskShare(const ObjectTrack& track) const;
   bool CoversImage(const ObjectTrack& track) const;
   void LabelPoints(const Work& work, DynamicResult& result) const;
   void ReadmitPoints(const Work& work, DynamicResult& result) const;
@@ -122,6 +133,7 @@ class DynamicFilter {
   Vector6d last_motion_ = Vector6d::Zero();  // twist from the last frame to the present one
   bool steady_ = false;                      // the camera turns slowly
   cv::Mat1b last_doubtful_;                  // cells of the last frame that may be objects
+  std::vector<Landmark> landmarks_;          // of the last frame
   std::optional<Rigid3d> T_cw_last_;         // of the last frame, by tracking
   std::optional<Rigid3d> T_cw_expected_;     // of the present one, by its motion since
   FrameId last_detections_;                  // the frame of the newest detections taken

@@ -66,6 +66,18 @@ Eigen::Vector2f CameraShift(const Camera& camera, const Rigid3d& T_now_past,
   return camera.Distort(camera.Project(p)).cast<float>() - past_px;
 }
 
+// At the edge of a mover its points may seem to lie on what is behind it, which stands still.
+bool MovesAsAWhole(const ObjectMask& mask, const std::vector<TestedPoint>& points) {
+  MotionEvidence evidence;
+  for (const TestedPoint& point : points) {
+    if (!mask.Covers(point.image_px)) continue;
+    ++evidence.tested;
+    evidence.moving += point.moves;
+  }
+  constexpr double kLeastShare = 0.2;
+  return evidence.MovingShare() >= kLeastShare;
+}
+
 }  // namespace
 
 // Follows points on the object from the image of the detection to this one.
@@ -175,9 +187,9 @@ void DynamicFilter::ExcludePlanes(Work& work) const {
   const bool outside_shows = cv::countNonZero(in_box) < kMostlyCovered * in_box.total();
   PlaneOptions options = options_.planes;
   if (!outside_shows) options.min_share = options.covered_share;
-  work.on_plane = FindPlaneBlocks(work.view.depth, rays, outside_shows ? in_box : in_mover, options,
-                                  seed_ + static_cast<uint64_t>(work.frame.id.value()));
   if (work.background.rows() == 0) work.background = BlockVerdicts(rays.rows(), rays.cols());
+  work.on_plane = FindPlaneBlocks(work.view.depth, rays, outside_shows ? in_box : in_mover,
+                                  BlocksInMasks(), options, SeedFor(work));
   for (int r = 0; r < rays.rows(); ++r) {
     for (int c = 0; c < rays.cols(); ++c) {
       const bool is_new = work.background.At(r, c) == BlockVerdict::kIntruder;
@@ -185,6 +197,19 @@ void DynamicFilter::ExcludePlanes(Work& work) const {
         work.background.Set(r, c, BlockVerdict::kConfirmed);
     }
   }
+}
+
+// Blocks of what was removed from the last image.
+cv::Mat1b DynamicFilter::BlocksInMasks() const {
+  const BlockRays& rays = background_.rays();
+  cv::Mat1b in_mask(rays.rows(), rays.cols(), static_cast<uint8_t>(0));
+  for (const ObjectTrack& track : tracks_.tracks()) {
+    if (track.mask.empty() || !track.Removes()) continue;
+    cv::Mat1b blocks;
+    cv::resize(track.mask.cells, blocks, in_mask.size(), 0, 0, cv::INTER_NEAREST);
+    in_mask |= blocks;
+  }
+  return in_mask;
 }
 
 void DynamicFilter::GrowMasks(const Work& work) {
@@ -239,6 +264,7 @@ void DynamicFilter::FindMovers(const Work& work) {
     box = {box.x0 - margin_px, box.y0 - margin_px, box.x1 + margin_px, box.y1 + margin_px};
     ObjectMask mask = MaskAroundPoints(work.view.depth, work.background, seeds,
                                        depths[depths.size() / 2], box, options_.mask);
+    if (!MovesAsAWhole(mask, points)) continue;
     const ImageBox around = mask.box;
     tracks_.TakeMover(around, std::move(mask), work.frame.time_s);
   }

@@ -62,7 +62,7 @@ Seen Classify(DynamicFilter& filter, const RgbdFrame& frame, const Detections* d
   Seen seen;
   seen.features = GridFeatures(frame);
   seen.result = filter.Classify(frame, seen.features, T_last_now, detections);
-  filter.TakePose(Rigid3d(), true);
+  filter.TakePose(Rigid3d(), true, {});
   return seen;
 }
 
@@ -341,8 +341,38 @@ TEST(DynamicFilterFull, ACorrectedMapAndALostCameraAreSurvived) {
     const DynamicResult result = filter->Classify(frame, GridFeatures(frame), {}, nullptr);
     EXPECT_EQ(result.labels.Counts()[0], result.labels.size()) << i;
     // Frame 4 is lost; from frame 8 on the world has other coordinates.
-    filter->TakePose(i == 4 ? std::nullopt : std::optional(i < 8 ? Rigid3d() : elsewhere), i != 8);
+    filter->TakePose(i == 4 ? std::nullopt : std::optional(i < 8 ? Rigid3d() : elsewhere), i != 8,
+                     {});
   }
+}
+
+// A thing that covers most of the image goes to the right before a wall that stands still.
+Seen SeenAfterFourSteps(bool with_landmarks) {
+  std::vector<Landmark> landmarks;
+  for (float y = 20; with_landmarks && y < 100; y += 16) {
+    for (float x = 20; x < 620; x += 40) {
+      const Eigen::Vector2f px(x, y);
+      landmarks.push_back({px, TestCamera()->Unproject(px.cast<double>(), kWall_m)});
+    }
+  }
+  const auto filter = MakeFilter(Mode("full"));
+  Seen seen;
+  for (int i = 0; i < 4; ++i) {
+    const RgbdFrame frame = TexturedFrame(i, 0.03 * i, 0, {40 + 6 * i, 120, 560, 360});
+    seen.features = GridFeatures(frame);
+    seen.result = filter->Classify(frame, seen.features, {}, nullptr);
+    filter->TakePose(Rigid3d(), true, landmarks);
+  }
+  return seen;
+}
+
+TEST(DynamicFilterFull, LandmarksTellTheCamerasMotionWhereMostOfTheImageMoves) {
+  const ImageBox wall{0, 0, 640, 110};
+  EXPECT_FALSE(SeenAfterFourSteps(false).result.T_now_last);
+  const Seen seen = SeenAfterFourSteps(true);
+  ASSERT_TRUE(seen.result.T_now_last);
+  EXPECT_LT(seen.result.T_now_last->Log().norm(), 1e-3);
+  EXPECT_GT(seen.ShareOf(PointReason::kStatic, wall), 0.9);
 }
 
 TEST(DynamicFilterFull, AnImageWithoutPointsIsSurvived) {
@@ -351,7 +381,7 @@ TEST(DynamicFilterFull, AnImageWithoutPointsIsSurvived) {
     const DynamicResult result = filter->Classify(TexturedFrame(i, 0.1 * i, 0), {}, {}, nullptr);
     EXPECT_EQ(result.labels.size(), 0);
     EXPECT_FALSE(result.camera_motion_reliable);
-    filter->TakePose(std::nullopt, true);
+    filter->TakePose(std::nullopt, true, {});
   }
 }
 

@@ -53,8 +53,10 @@ Status DynamicOptions::Check() const {
   if (!(motion.min_residual_px > 0) || !(motion.look_back_s >= 0))
     return Status::Error(
         "dynamic.motion: min_residual_px must be positive, look_back_s not negative");
-  if (!(mask.depth_band_m > 0) || !(mask.max_image_share > 0))
-    return Status::Error("dynamic.mask: depth_band_m and max_image_share must be positive");
+  if (!(mask.depth_band_m > 0) || !(mask.max_image_share > 0) || !(mask.max_mover_share > 0)) {
+    return Status::Error(
+        "dynamic.mask: depth_band_m, max_image_share and max_mover_share must be positive");
+  }
   if (history_frames < 2) return Status::Error("dynamic.history_frames must be at least 2");
   if (!(max_feature_factor >= 1))
     return Status::Error("dynamic.max_feature_factor must be at least 1");

@@ -33,6 +33,7 @@ TEST(DynamicOptions, WhatMakesNoSenseIsAnError) {
       [](DynamicOptions& o) { o.motion.look_back_s = kNan; },
       [](DynamicOptions& o) { o.mask.depth_band_m = 0; },
       [](DynamicOptions& o) { o.mask.max_image_share = 0; },
+      [](DynamicOptions& o) { o.mask.max_mover_share = 0; },
       [](DynamicOptions& o) { o.history_frames = 1; },
       [](DynamicOptions& o) { o.max_feature_factor = 0.5; },
       [](DynamicOptions& o) { o.flow.shrink = 3; },

@@ -153,6 +153,12 @@ ObjectMask WholeBox(const CoarseDepth& depth, const ImageBox& box) {
   return Finished(std::move(cells), 0);
 }
 
+ObjectMask Union(const ObjectMask& a, const ObjectMask& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  return Finished(a.cells | b.cells, a.area >= b.area ? a.depth_m : b.depth_m);
+}
+
 ObjectMask MaskInBox(const CoarseDepth& depth, const BlockVerdicts& background, const ImageBox& box,
                      bool trusted, std::optional<float> expected_depth_m,
                      const ObjectMaskOptions& options) {

@@ -43,4 +43,7 @@ ObjectMask MaskAroundPoints(const CoarseDepth& depth, const BlockVerdicts& backg
                             const std::vector<Eigen::Vector2f>& points_px, float depth_m,
                             const ImageBox& box, const ObjectMaskOptions& options);
 
+// Both together; the larger one says the depth.
+ObjectMask Union(const ObjectMask& a, const ObjectMask& b);
+
 }  // namespace msf

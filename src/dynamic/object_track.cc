@@ -140,9 +140,12 @@ void ObjectTracks::TakeDetections(const std::vector<Detection>& detections, doub
 }
 
 void ObjectTracks::TakeMover(const ImageBox& box, ObjectMask mask, double time_s) {
+  constexpr float kSimilarDepth_m = 0.3f;
   ObjectTrack* track = nullptr;
   for (ObjectTrack& other : tracks_) {
     if (other.kind != ObjectKind::kUnknown) continue;
+    if (!other.mask.empty() && std::abs(other.mask.depth_m - mask.depth_m) > kSimilarDepth_m)
+      continue;
     if (IntersectionOverUnion(box, other.box) >= options_.min_iou ||
         Containment(box, other.box) > 0.5f)
       track = &other;
@@ -151,8 +154,8 @@ void ObjectTracks::TakeMover(const ImageBox& box, ObjectMask mask, double time_s
     track = &tracks_.emplace_back();
     track->id = next_id_++;
   }
-  track->box = box;
-  track->mask = std::move(mask);
+  track->mask = Union(track->mask, mask);
+  track->box = track->mask.box;
   track->state = MotionState::kMoving;
   track->confirmed_s = track->resting_since_s = time_s;
   ++track->confirmations;

@@ -145,7 +145,7 @@ StatusOr<TrackingResult> System::Impl::Track(const RgbdFramePtr& frame) {
   {
     const StageTimer timer(timings_ms, "tracking");
     result = tracker_.Track(
-        frame, used, std::make_shared<const FrameFeatures>(std::move(split.removed)), Load());
+        frame, used, std::make_shared<const FrameFeatures>(std::move(split.removed)), Load(), dynamics.T_now_last);
   }
   for (const auto& [stage, ms] : result.timings_ms) timings_ms["tracking." + stage] = ms;
   timings_ms["total"] = 0;
@@ -190,7 +190,7 @@ DynamicResult System::Impl::Classify(const RgbdFramePtr& frame, const FrameFeatu
 
 void System::Impl::TellFilter(const TrackingResult& result) {
   const uint64_t epoch = map_.Read()->epoch();
-  filter_->TakePose(result.T_cw, !result.started_map && epoch == filter_epoch_);
+  filter_->TakePose(result.T_cw, !result.started_map && epoch == filter_epoch_, result.landmarks);
   filter_epoch_ = epoch;
 }
 

@@ -4,6 +4,7 @@
 
 #include "feature/rolling_shutter.h"
 #include "tracking/keyframe_creation.h"
+#include "tracking/landmarks.h"
 #include "tracking/static_evidence.h"
 
 namespace msf {
@@ -47,9 +48,10 @@ Tracker::Tracker(const Options& options, std::shared_ptr<const Camera> camera,
       database_(database) {}
 
 TrackingResult Tracker::Track(RgbdFramePtr image, std::shared_ptr<const FrameFeatures> features,
-                              std::shared_ptr<const FrameFeatures> removed,
-                              const MappingLoad& load) {
+                              std::shared_ptr<const FrameFeatures> removed, const MappingLoad& load,
+                              const std::optional<Rigid3d>& T_now_last) {
   TrackingResult result;
+  T_now_last_ = last_frame_tracked_ ? T_now_last : std::nullopt;
   result.frame_id = image->id;
   result.time_s = image->time_s;
   result.num_features = features->size();
@@ -96,17 +98,26 @@ bool Tracker::StartMap(TrackingResult& result) {
 // after do not go together: then the frame is located once more.
 bool Tracker::Locate(TrackingResult& result) {
   for (int attempt = 1;; ++attempt) {
-    UndoRollingShutterAt(PredictVelocity());
     epoch_ = map_.Read()->epoch();
-    bool located = FindPose(result);
-    if (located) {
-      // The velocity is known better now than it could be predicted.
-      UndoRollingShutterAt(MeasureVelocity());
-      located = RefineWithLocalMap(result);
+    bool located = LocateByVelocity(result);
+    if (!located && T_now_last_) {
+      // It does not go on as it did.
+      BeginAnew();
+      velocity_ = T_now_last_;
+      velocity_interval_s_ = frame_.image->time_s - last_.image->time_s;
+      located = LocateByVelocity(result);
     }
     if (attempt == kMaxLocateAttempts || map_.Read()->epoch() == epoch_) return located;
     BeginAnew();
   }
+}
+
+bool Tracker::LocateByVelocity(TrackingResult& result) {
+  UndoRollingShutterAt(PredictVelocity());
+  if (!FindPose(result)) return false;
+  // The velocity is known better now than it could be predicted.
+  UndoRollingShutterAt(MeasureVelocity());
+  return RefineWithLocalMap(result);
 }
 
 void Tracker::BeginAnew() {
@@ -325,6 +336,7 @@ void Tracker::UpdateState(bool tracked, TrackingResult& result) {
 }
 
 void Tracker::RememberFrame(bool tracked, TrackingResult& result) {
+  T_now_last_.reset();
   velocity_.reset();
   // Two poses from before and after a correction of the map say nothing about the camera's motion.
   const bool same_epoch = map_.Read()->epoch() == epoch_;
@@ -335,6 +347,7 @@ void Tracker::RememberFrame(bool tracked, TrackingResult& result) {
     velocity_ = frame_.T_cw * last_.T_cw.Inverse();
     velocity_interval_s_ = frame_.image->time_s - last_.image->time_s;
   }
+  result.landmarks = FindLandmarks(context_, *map_.Read(), frame_, *extracted_, matches_);
   result.T_cw = frame_.T_cw;
   result.map_id = map_.Read()->MapOf(frame_.reference);
   result.reference = frame_.reference;

@@ -30,9 +30,12 @@ class Tracker {
 
   // Frames must come in the order of time. `removed`: features that seem to move; they are not
   // used unless the map knows better (TrackingOptions::readmit_probability), and points of the map
-  // that look like them are doubted. `load` says how busy the mapper is.
+  // that look like them are doubted. `load` says how busy the mapper is. `T_now_last`: the motion
+  // since the image before, if it was seen: where to look for a camera that does not go on as it
+  // did.
   TrackingResult Track(RgbdFramePtr image, std::shared_ptr<const FrameFeatures> features,
-                       std::shared_ptr<const FrameFeatures> removed, const MappingLoad& load);
+                       std::shared_ptr<const FrameFeatures> removed, const MappingLoad& load,
+                       const std::optional<Rigid3d>& T_now_last);
 
   // How the camera will have moved `duration_s` from now if it goes on as it does: takes its
   // coordinates of now to those of then. No motion while the velocity is not known.
@@ -42,6 +45,7 @@ class Tracker {
   bool StartMap(TrackingResult& result);
   // The frame's pose in the map.
   bool Locate(TrackingResult& result);
+  bool LocateByVelocity(TrackingResult& result);
   // A first pose from the motion model, else the reference keyframe, else relocalisation.
   bool FindPose(TrackingResult& result);
   bool FollowMotion();
@@ -87,7 +91,8 @@ class Tracker {
   std::vector<Suspect> suspects_;  // among the removed features; they point into local_map_
   std::optional<Rigid3d>
       velocity_;  // T_cl: last camera to present camera, from one frame to the next
-  double velocity_interval_s_ = 0;  // the time between these two
+  double velocity_interval_s_ = 0;     // the time between these two
+  std::optional<Rigid3d> T_now_last_;  // the motion since the last frame, if it was seen
   LocalMap local_map_;
   uint64_t epoch_ = 0;  // of the map that the frame was located in
   bool last_frame_tracked_ = false;

@@ -28,7 +28,14 @@ class Trip {
   using Suspicion = std::function<bool(const Eigen::Vector2f& px)>;
   TrackingResult Go(double rad_per_s, const Suspicion& seems_to_move = {},
                     float probability = 0.15f, float shift_px = 0) {
-    angle_rad_ += rad_per_s * kFrame_s;
+    return Jump(rad_per_s * kFrame_s, rad_per_s, seems_to_move, probability, shift_px);
+  }
+  // The same by `step_rad`, whatever the velocity at which the rows are exposed. `T_now_last`: the
+  // motion as it was seen.
+  TrackingResult Jump(double step_rad, double rad_per_s = 0, const Suspicion& seems_to_move = {},
+                      float probability = 0.15f, float shift_px = 0,
+                      const std::optional<Rigid3d>& T_now_last = std::nullopt) {
+    angle_rad_ += step_rad;
     const TestWorld::View view =
         world_.Look(TestWorld::PoseOnCircle(angle_rad_), VelocityAt(rad_per_s));
     FrameFeatures used, removed;
@@ -51,7 +58,7 @@ class Trip {
     image.color = cv::Mat::zeros(image.camera->height, image.camera->width, CV_8U);
     return tracker_.Track(std::make_shared<const RgbdFrame>(image),
                           std::make_shared<const FrameFeatures>(used),
-                          std::make_shared<const FrameFeatures>(removed), {});
+                          std::make_shared<const FrameFeatures>(removed), {}, T_now_last);
   }
   // How far the camera is from where the first frame's pose and its path put it, m.
   double Error(const TrackingResult& result) const {
@@ -149,6 +156,44 @@ TEST(Tracker, RemovedFeaturesThatAreElsewhereStayAway) {
   const TrackingResult result = trip.Go(0.1, InLeftThird, 0.15f, 12);
   EXPECT_LT(result.readmitted.size(), trip.num_removed() / 20u);
   EXPECT_LT(trip.Error(result), 0.01);
+}
+
+TEST(Tracker, AMotionThatWasSeenHelpsWhereTheCameraDoesNotGoOnAsItDid) {
+  constexpr double kJump_rad = 0.2;
+  TrackingOptions without_words;
+  without_words.min_reference_matches = 1000000;
+  const Rigid3d T_now_last =
+      TestWorld::PoseOnCircle(kJump_rad) * TestWorld::PoseOnCircle(0).Inverse();
+  for (const bool seen : {false, true}) {
+    Trip trip(without_words);
+    for (int i = 0; i < 10; ++i) trip.Go(0.1);
+    const TrackingResult result =
+        trip.Jump(kJump_rad, 0, {}, 0, 0, seen ? std::optional(T_now_last) : std::nullopt);
+    EXPECT_EQ(result.T_cw.has_value(), seen);
+    if (seen) EXPECT_LT(trip.Error(result), 0.02);
+  }
+}
+
+TEST(Tracker, ShowsLandmarksOnceTheMapIsOldEnough) {
+  Trip trip({});
+  double time_s = 0;
+  for (TrackingResult result = trip.Go(0.1); time_s < 1.5; result = trip.Go(0.1)) {
+    time_s = result.time_s;
+    EXPECT_EQ(result.landmarks.empty(), time_s < 1) << time_s;
+  }
+}
+
+TEST(TrackingOptions, RefuseLandmarksThatCannotBe) {
+  const auto accepts = [](double age_s, int count) {
+    TrackingOptions options;
+    options.landmark_age_s = age_s;
+    options.max_landmarks = count;
+    return options.Check().ok();
+  };
+  EXPECT_TRUE(accepts(0, 0));
+  EXPECT_FALSE(accepts(-1, 100));
+  EXPECT_FALSE(accepts(std::nan(""), 100));
+  EXPECT_FALSE(accepts(1, -1));
 }
 
 TEST(TrackingOptions, RefuseWhatIsNoProbability) {

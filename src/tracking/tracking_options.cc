@@ -15,10 +15,13 @@ Status TrackingOptions::Check() const {
   if (local_search_rounds < 1)
     return Status::Error("tracking.local_search_rounds must be at least 1");
   if (recently_lost_s < 0) return Status::Error("tracking.recently_lost_s must not be negative");
-  for (const double probability :
-       {min_static_probability, readmit_probability, readmit_point_probability}) {
+  for (const double probability : {min_static_probability, readmit_probability,
+                                   readmit_point_probability, landmark_probability}) {
     if (!(probability >= 0 && probability <= 1))
       return Status::Error("tracking: probabilities must be from 0 to 1");
+  }
+  if (!(landmark_age_s >= 0) || max_landmarks < 0) {
+    return Status::Error("tracking.landmark_age_s and tracking.max_landmarks must not be negative");
   }
   if (keyframe.max_interval_s <= 0)
     return Status::Error("tracking.keyframe.max_interval_s must be positive");

@@ -55,6 +55,9 @@ struct TrackingOptions {
   double min_static_probability = 0.3;
   double readmit_probability = 0.12;
   double readmit_point_probability = 0.6;
+  double landmark_probability = 0.6;
+  double landmark_age_s = 1;
+  int max_landmarks = 200;
   KeyFramePolicyOptions keyframe;
   PoseOptimizerOptions pose;
 
@@ -102,6 +105,13 @@ struct TrackingOptions {
           "where the map has a static point that looks like them; 1: never ...");
     visit("readmit_point_probability", readmit_point_probability,
           "... and how likely static that point must be");
+    visit("landmark_probability", landmark_probability,
+          "points of the map that are at least this likely static ...");
+    visit(
+        "landmark_age_s", landmark_age_s,
+        "... and have been in it for so long, s, tell how the camera has moved before it is known "
+        "what else has ...");
+    visit("max_landmarks", max_landmarks, "... by the flow of at most so many; 0: none");
     visit("keyframe", keyframe, "");
     visit("pose", pose, "");
   }

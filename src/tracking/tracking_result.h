@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "feature/landmark.h"
 #include "geometry/rigid3d.h"
 #include "util/stage_timer.h"
 #include "util/strong_id.h"
@@ -27,8 +28,9 @@ struct TrackingResult {
       T_cw;  // world to camera, in the coordinates of map_id at this moment; empty without a pose
   MapId map_id;
   int num_features = 0;
-  int num_inliers = 0;          // map points that agree with the pose
-  std::vector<int> readmitted;  // of the removed features, those that are used after all
+  int num_inliers = 0;              // map points that agree with the pose
+  std::vector<int> readmitted;      // of the removed features, those that are used after all
+  std::vector<Landmark> landmarks;  // what the frame shows of the map's trusted part
   KeyFrameId reference;
   Rigid3d T_c_reference;
   bool started_map = false;                // this frame is the first of a new map
