@@ -118,7 +118,7 @@ cv::Mat1b BlocksOn(const Plane& plane, const CoarseDepth& depth, const BlockRays
 
 // A back may be flat, and fill a box.
 bool IsPartOfObject(const cv::Mat1b& on_plane, const cv::Mat1b& in_mask) {
-  constexpr double kMost = 0.6;
+  constexpr double kMost = 0.8;
   return cv::countNonZero(on_plane & in_mask) > kMost * cv::countNonZero(on_plane);
 }
 

@@ -144,8 +144,9 @@ StatusOr<TrackingResult> System::Impl::Track(const RgbdFramePtr& frame) {
   TrackingResult result;
   {
     const StageTimer timer(timings_ms, "tracking");
-    result = tracker_.Track(
-        frame, used, std::make_shared<const FrameFeatures>(std::move(split.removed)), Load(), dynamics.T_now_last);
+    result =
+        tracker_.Track(frame, used, std::make_shared<const FrameFeatures>(std::move(split.removed)),
+                       Load(), dynamics.T_now_last);
   }
   for (const auto& [stage, ms] : result.timings_ms) timings_ms["tracking." + stage] = ms;
   timings_ms["total"] = 0;
