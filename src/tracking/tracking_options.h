@@ -57,7 +57,7 @@ struct TrackingOptions {
   double readmit_point_probability = 0.6;
   double landmark_probability = 0.6;
   double landmark_age_s = 1;
-  int max_landmarks = 200;
+  int max_landmarks = 100;
   KeyFramePolicyOptions keyframe;
   PoseOptimizerOptions pose;
 
