@@ -45,7 +45,7 @@ Status DynamicOptions::Check() const {
   for (const double share :
        {min_static_probability, tracks.min_iou, tracks.moving_share, tracks.settled_share,
         tracks.mover_share, tracks.new_share, tracks.settled_weight, planes.min_share,
-        planes.covered_share, mask.min_depth_share}) {
+        planes.covered_share, mask.min_depth_share, mask.near_depth_share}) {
     if (share > 1) return Status::Error("dynamic: shares and probabilities are at most 1");
   }
   if (!(paper_flow_px > 0) || paper_window_px < 3)

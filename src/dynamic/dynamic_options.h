@@ -101,7 +101,8 @@ struct ObjectMaskOptions {
   double mover_margin = 0.3;
   int grow_px = 4;
   int grow_without_depth_px = 12;
-  double min_depth_share = 0.5;
+  double min_depth_share = 0.15;
+  double near_depth_share = 0.5;
   double max_image_share = 0.9;
   double max_mover_share = 0.55;
 
@@ -120,6 +121,8 @@ struct ObjectMaskOptions {
           "and so far over pixels without depth, px");
     visit("min_depth_share", min_depth_share,
           "with less valid depth inside a box the whole box is the mask");
+    visit("near_depth_share", near_depth_share,
+          "with less the pixels without depth are: the object may be too near to be measured");
     visit("max_image_share", max_image_share, "larger masks are distrusted");
     visit("max_mover_share", max_mover_share,
           "and larger ones of movers of unknown class, unless this very image shows them moving");

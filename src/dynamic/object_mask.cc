@@ -133,6 +133,13 @@ void Grow(cv::Mat1b& mask, const CoarseDepth& depth, const ObjectMaskOptions& op
   }
 }
 
+// Who is nearer than the sensor can measure has no depth, and what has depth in the box may all be
+// behind.
+void AddCellsWithoutDepth(const CoarseDepth& depth, const cv::Rect& box, cv::Mat1b& mask) {
+  const cv::Mat1b without_depth = depth.metres()(box) <= 0;
+  mask(box) |= without_depth;
+}
+
 ObjectMask Finished(cv::Mat1b cells, float depth_m) {
   ObjectMask mask;
   mask.cells = std::move(cells);
@@ -185,6 +192,8 @@ ObjectMask MaskInBox(const CoarseDepth& depth, const BlockVerdicts& background, 
                   options);
   }
   KeepLargePieces(cells);
+  if (histogram.valid < options.near_depth_share * histogram.cells)
+    AddCellsWithoutDepth(depth, CellsOf(depth, box), cells);
   Grow(cells, depth, options);
   return Finished(std::move(cells), depth_m);
 }

@@ -29,8 +29,8 @@ struct ObjectMask {
 // The object in `box` (pixels), without what `background` has confirmed as static. A person who has
 // sat still and was not found for a while looks like background, too: where `box` is a good
 // detection (`trusted`) and almost all of it is confirmed, the detector knows better.
-// `expected_depth_m`: where the object was a moment ago, if that is known. Without depth in the box
-// the box is the mask.
+// `expected_depth_m`: where the object was a moment ago, if that is known. With little depth in the
+// box what has none is the object, too; without any the box is the mask.
 ObjectMask MaskInBox(const CoarseDepth& depth, const BlockVerdicts& background, const ImageBox& box,
                      bool trusted, std::optional<float> expected_depth_m,
                      const ObjectMaskOptions& options);

@@ -19,6 +19,12 @@ float Containment(const ImageBox& a, const ImageBox& b) {
   return smaller > 0 ? common.area() / smaller : 0;
 }
 
+// A mask whose depth is not known may be at any.
+bool AtSimilarDepth(const ObjectMask& a, const ObjectMask& b) {
+  constexpr float kSimilar_m = 0.3f;
+  return a.depth_m <= 0 || b.depth_m <= 0 || std::abs(a.depth_m - b.depth_m) <= kSimilar_m;
+}
+
 }  // namespace
 
 const char* ToString(MotionState state) {
@@ -140,12 +146,9 @@ void ObjectTracks::TakeDetections(const std::vector<Detection>& detections, doub
 }
 
 void ObjectTracks::TakeMover(const ImageBox& box, ObjectMask mask, double time_s) {
-  constexpr float kSimilarDepth_m = 0.3f;
   ObjectTrack* track = nullptr;
   for (ObjectTrack& other : tracks_) {
-    if (other.kind != ObjectKind::kUnknown) continue;
-    if (!other.mask.empty() && std::abs(other.mask.depth_m - mask.depth_m) > kSimilarDepth_m)
-      continue;
+    if (other.kind != ObjectKind::kUnknown || !AtSimilarDepth(other.mask, mask)) continue;
     if (IntersectionOverUnion(box, other.box) >= options_.min_iou ||
         Containment(box, other.box) > 0.5f)
       track = &other;
@@ -162,7 +165,7 @@ void ObjectTracks::TakeMover(const ImageBox& box, ObjectMask mask, double time_s
 }
 
 void ObjectTracks::MergeMovers() {
-  constexpr float kMostlyInside = 0.7f, kSimilarDepth_m = 0.3f;
+  constexpr float kMostlyInside = 0.7f;
   std::vector<uint8_t> merged(tracks_.size(), 0);
   for (size_t a = 0; a < tracks_.size(); ++a) {
     for (size_t b = a + 1; b < tracks_.size(); ++b) {
@@ -172,8 +175,7 @@ void ObjectTracks::MergeMovers() {
           other.kind != ObjectKind::kUnknown || one.mask.empty() || other.mask.empty())
         continue;
       const bool same_place = Containment(one.mask.box, other.mask.box) > kMostlyInside;
-      if (!same_place || std::abs(one.mask.depth_m - other.mask.depth_m) > kSimilarDepth_m)
-        continue;
+      if (!same_place || !AtSimilarDepth(one.mask, other.mask)) continue;
       if (other.mask.area > one.mask.area) {
         one.mask = other.mask;
         one.box = other.box;
