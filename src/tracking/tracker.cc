@@ -57,6 +57,7 @@ TrackingResult Tracker::Track(RgbdFramePtr image, std::shared_ptr<const FrameFea
   result.num_features = features->size();
   extracted_ = std::move(features);
   extracted_removed_ = std::move(removed);
+  taken_back_.clear();
   frame_ = Frame();
   frame_.image = std::move(image);
   BeginAnew();
@@ -107,9 +108,29 @@ bool Tracker::Locate(TrackingResult& result) {
       velocity_interval_s_ = frame_.image->time_s - last_.image->time_s;
       located = LocateByVelocity(result);
     }
+    if (!located && TakeBackDoubtful()) located = LocateByVelocity(result);
+    if (!taken_back_.empty()) result.readmitted = taken_back_;
     if (attempt == kMaxLocateAttempts || map_.Read()->epoch() == epoch_) return located;
     BeginAnew();
   }
+}
+
+// Rather than losing track: what only a mask or a single test speaks against may be static, too.
+bool Tracker::TakeBackDoubtful() {
+  if (!taken_back_.empty()) return false;
+  auto features = std::make_shared<FrameFeatures>(*extracted_);
+  for (int i = 0; i < extracted_removed_->size(); ++i) {
+    const float probability = extracted_removed_->static_weight[i];
+    if (probability < options_.tracking.readmit_probability) continue;
+    features->Append(*extracted_removed_, i, probability);
+    taken_back_.push_back(i);
+  }
+  if (taken_back_.empty()) return false;
+  features->BuildGrid(*camera_);
+  extracted_ = std::move(features);
+  extracted_removed_ = std::make_shared<const FrameFeatures>();
+  BeginAnew();
+  return true;
 }
 
 bool Tracker::LocateByVelocity(TrackingResult& result) {

@@ -46,6 +46,8 @@ class Tracker {
   // The frame's pose in the map.
   bool Locate(TrackingResult& result);
   bool LocateByVelocity(TrackingResult& result);
+  // Moves removed features that may be static after all to the others; false where there are none.
+  bool TakeBackDoubtful();
   // A first pose from the motion model, else the reference keyframe, else relocalisation.
   bool FindPose(TrackingResult& result);
   bool FollowMotion();
@@ -86,7 +88,8 @@ class Tracker {
   Frame frame_;  // the present one
   // Its features and the removed ones where a rolling shutter shows them.
   std::shared_ptr<const FrameFeatures> extracted_, extracted_removed_;
-  Frame last_;  // the last one that had a pose
+  std::vector<int> taken_back_;  // of the removed ones as they came, those that are used after all
+  Frame last_;                   // the last one that had a pose
   std::vector<PointMatch> matches_;
   std::vector<Suspect> suspects_;  // among the removed features; they point into local_map_
   std::optional<Rigid3d>

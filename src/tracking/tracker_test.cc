@@ -174,6 +174,19 @@ TEST(Tracker, AMotionThatWasSeenHelpsWhereTheCameraDoesNotGoOnAsItDid) {
   }
 }
 
+TEST(Tracker, RatherThanLosingTrackWhatMayBeStaticIsUsed) {
+  const auto almost_everywhere = [](const Eigen::Vector2f& px) { return px.x() > 20; };
+  for (const float probability : {0.05f, 0.15f}) {
+    Trip trip({});
+    for (int i = 0; i < 5; ++i) trip.Go(0.1);
+    const TrackingResult result = trip.Go(0.1, almost_everywhere, probability);
+    const bool may_be_static = probability > 0.1f;
+    EXPECT_EQ(result.T_cw.has_value(), may_be_static);
+    EXPECT_EQ(result.readmitted.size(), may_be_static ? trip.num_removed() : 0u);
+    if (may_be_static) EXPECT_LT(trip.Error(result), 0.01);
+  }
+}
+
 TEST(Tracker, ShowsLandmarksOnceTheMapIsOldEnough) {
   Trip trip({});
   double time_s = 0;
