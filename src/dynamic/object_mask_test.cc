@@ -143,6 +143,26 @@ BlockVerdicts ConfirmedFrom(int x_px) {
   return verdicts;
 }
 
+TEST(MaskInBox, WhoIsTooNearToBeMeasuredIsTheObject) {
+  // Someone without depth fills most of the box; beside him the wall shows.
+  const CoarseDepth depth(DepthFrame(kWall_m, {{{220, 100, 130, 280}, 0}}));
+  const ObjectMask mask = MaskInBox(depth, {}, kBox, false, std::nullopt, WithoutGrowing());
+  EXPECT_TRUE(mask.Covers({280, 240}));
+  ObjectMaskOptions options = WithoutGrowing();
+  options.near_depth_share = 0;
+  EXPECT_FALSE(MaskInBox(depth, {}, kBox, false, std::nullopt, options).Covers({280, 240}));
+}
+
+TEST(Union, CoversWhatEitherDoes) {
+  const CoarseDepth depth = ThingBeforeWall();
+  const ObjectMask left = WholeBox(depth, {8, 8, 40, 40}), right = WholeBox(depth, {32, 8, 48, 40});
+  const ObjectMask both = Union(left, right);
+  EXPECT_EQ(both.area, 10 * 8);
+  ExpectBox(both.box, {8, 8, 48, 40});
+  EXPECT_EQ(Union(left, {}).area, left.area);
+  EXPECT_EQ(Union({}, left).area, left.area);
+}
+
 TEST(MaskInBox, WhatWasThereBeforeIsNotPartOfTheThing) {
   const ObjectMask mask =
       MaskInBox(ThingBeforeWall(), ConfirmedFrom(352), kBox, false, std::nullopt, WithoutGrowing());

@@ -109,7 +109,7 @@ bool Tracker::Locate(TrackingResult& result) {
       located = LocateByVelocity(result);
     }
     if (!located && TakeBackDoubtful()) located = LocateByVelocity(result);
-    if (!taken_back_.empty()) result.readmitted = taken_back_;
+    if (!taken_back_.empty()) result.readmitted = located ? taken_back_ : std::vector<int>();
     if (attempt == kMaxLocateAttempts || map_.Read()->epoch() == epoch_) return located;
     BeginAnew();
   }
