@@ -262,11 +262,10 @@ void DynamicFilter::FindMovers(const Work& work) {
                      depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
     const float margin_px = 12 + 0.25f * std::max(box.width(), box.height());
     box = {box.x0 - margin_px, box.y0 - margin_px, box.x1 + margin_px, box.y1 + margin_px};
-    ObjectMask mask = MaskAroundPoints(work.view.depth, work.background, seeds,
-                                       depths[depths.size() / 2], box, options_.mask);
+    const ObjectMask mask = MaskAroundPoints(work.view.depth, work.background, seeds,
+                                             depths[depths.size() / 2], box, options_.mask);
     if (!MovesAsAWhole(mask, points)) continue;
-    const ImageBox around = mask.box;
-    tracks_.TakeMover(around, std::move(mask), work.frame.time_s);
+    tracks_.TakeMover(mask, work.frame.time_s);
   }
 }
 
@@ -309,11 +308,10 @@ void DynamicFilter::FindIntruders(const Work& work) {
     const auto w = static_cast<float>(stats.at<int>(label, cv::CC_STAT_WIDTH)) * kBlock_px,
                h = static_cast<float>(stats.at<int>(label, cv::CC_STAT_HEIGHT)) * kBlock_px;
     const float margin_px = 16 + 0.5f * std::max(w, h);
-    ObjectMask mask = MaskAroundPoints(
+    const ObjectMask mask = MaskAroundPoints(
         work.view.depth, work.background, seeds, depths[depths.size() / 2],
         {x - margin_px, y - margin_px, x + w + margin_px, y + h + margin_px}, options_.mask);
-    const ImageBox around = mask.box;
-    tracks_.TakeMover(around, std::move(mask), work.frame.time_s);
+    tracks_.TakeMover(mask, work.frame.time_s);
   }
 }
 

@@ -145,12 +145,12 @@ void ObjectTracks::TakeDetections(const std::vector<Detection>& detections, doub
   }
 }
 
-void ObjectTracks::TakeMover(const ImageBox& box, ObjectMask mask, double time_s) {
+void ObjectTracks::TakeMover(const ObjectMask& mask, double time_s) {
   ObjectTrack* track = nullptr;
   for (ObjectTrack& other : tracks_) {
     if (other.kind != ObjectKind::kUnknown || !AtSimilarDepth(other.mask, mask)) continue;
-    if (IntersectionOverUnion(box, other.box) >= options_.min_iou ||
-        Containment(box, other.box) > 0.5f)
+    if (IntersectionOverUnion(mask.box, other.box) >= options_.min_iou ||
+        Containment(mask.box, other.box) > 0.5f)
       track = &other;
   }
   if (!track) {

@@ -68,8 +68,9 @@ class ObjectTracks {
   void TakeDetections(const std::vector<Detection>& detections, double time_s, double age_s = 0);
   // Whether TakeDetections() could use one that belongs to the image `frame`.
   bool MayTake(const Detection& detection, FrameId frame) const;
-  // A cluster of moving points outside all masks: confirms the mover there or starts one.
-  void TakeMover(const ImageBox& box, ObjectMask mask, double time_s);
+  // A cluster of moving points outside all masks: confirms and extends the mover there at its
+  // depth, or starts one.
+  void TakeMover(const ObjectMask& mask, double time_s);
   // Movers of unknown class that cover each other at the same depth are one, the older one.
   void MergeMovers();
   // The state of motion after `track.evidence` was filled.

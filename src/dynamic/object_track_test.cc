@@ -143,7 +143,7 @@ ObjectMask MaskOver(const ImageBox& box, float depth_m) {
 TEST_F(Detected, AMoverMustBeSeenThreeTimes) {
   for (int i = 1; i <= 3; ++i) {
     EXPECT_TRUE(i == 1 || !Only().Removes());
-    tracks_.TakeMover(kHere, MaskOver(kHere, 2), 0.1 * i);
+    tracks_.TakeMover(MaskOver(kHere, 2), 0.1 * i);
     Judge(10, 10, 0.1 * i);
   }
   EXPECT_EQ(Only().kind, ObjectKind::kUnknown);
@@ -155,31 +155,31 @@ TEST_F(Detected, AMoverMustBeSeenThreeTimes) {
 }
 
 TEST_F(Detected, AMoverElsewhereIsAnother) {
-  tracks_.TakeMover(kHere, MaskOver(kHere, 2), 1);
-  tracks_.TakeMover(kThere, MaskOver(kThere, 2), 1);
+  tracks_.TakeMover(MaskOver(kHere, 2), 1);
+  tracks_.TakeMover(MaskOver(kThere, 2), 1);
   EXPECT_EQ(tracks_.tracks().size(), 2u);
-  tracks_.TakeMover(kHere, MaskOver(kHere, 2.4f), 1);
+  tracks_.TakeMover(MaskOver(kHere, 2.4f), 1);
   EXPECT_EQ(tracks_.tracks().size(), 3u) << "one behind the other";
 }
 
 TEST_F(Detected, AMoverKeepsItsBodyWhenOnlyAPartIsSeenToMove) {
-  tracks_.TakeMover(kHere, MaskOver(kHere, 2), 1);
+  tracks_.TakeMover(MaskOver(kHere, 2), 1);
   const ObjectMask whole = Only().mask;
   const ImageBox hand{kHere.x0 + 8, kHere.y0 + 8, kHere.x0 + 32, kHere.y0 + 32};
-  tracks_.TakeMover(hand, MaskOver(hand, 2.2f), 1.1);
+  tracks_.TakeMover(MaskOver(hand, 2.2f), 1.1);
   EXPECT_EQ(Only().mask.area, whole.area);
   EXPECT_EQ(Only().mask.depth_m, 2);
   EXPECT_EQ(Only().box.x1, whole.box.x1);
   const ImageBox beside{hand.x0 - 20, hand.y0, hand.x1, hand.y1};
-  tracks_.TakeMover(beside, MaskOver(beside, 2), 1.2);
+  tracks_.TakeMover(MaskOver(beside, 2), 1.2);
   EXPECT_GT(Only().mask.area, whole.area);
   EXPECT_EQ(Only().box.x0, kHere.x0 - 12);
   EXPECT_EQ(Only().confirmations, 3);
 }
 
 TEST_F(Detected, MoversThatCoverEachOtherAreOne) {
-  tracks_.TakeMover(kHere, MaskOver(kHere, 2), 1);
-  tracks_.TakeMover(kThere, MaskOver(kThere, 2), 1);
+  tracks_.TakeMover(MaskOver(kHere, 2), 1);
+  tracks_.TakeMover(MaskOver(kThere, 2), 1);
   ObjectTrack& grown = tracks_.tracks()[1];  // both have grown over the same thing
   grown.mask = MaskOver({kHere.x0, kHere.y0, kHere.x1 + 20, kHere.y1}, 2);
   grown.confirmations = 3;
@@ -189,13 +189,13 @@ TEST_F(Detected, MoversThatCoverEachOtherAreOne) {
   EXPECT_EQ(Only().id, older);
   EXPECT_EQ(Only().mask.area, area);
   EXPECT_EQ(Only().confirmations, 3);
-  tracks_.TakeMover(kHere, MaskOver(kHere, 3), 1);
+  tracks_.TakeMover(MaskOver(kHere, 3), 1);
   tracks_.MergeMovers();
   EXPECT_EQ(tracks_.tracks().size(), 2u) << "one behind the other";
 }
 
 TEST_F(Detected, AMoverMayTurnOutToBeAPerson) {
-  tracks_.TakeMover(kHere, MaskOver(kHere, 2), 1);
+  tracks_.TakeMover(MaskOver(kHere, 2), 1);
   const int id = Only().id;
   tracks_.TakeDetections({{kPerson, 0.2f, kHere}}, 2);
   EXPECT_EQ(Only().kind, ObjectKind::kUnknown) << "too weak to start a track";
@@ -314,7 +314,7 @@ TEST_F(Lost, AnOldAcquaintanceThatLooksTheSameIsFollowedForLonger) {
 }
 
 TEST_F(Lost, AMoverWithoutAMaskHasVanished) {
-  tracks_.TakeMover(kHere, MaskOver(kHere, 2), 1);
+  tracks_.TakeMover(MaskOver(kHere, 2), 1);
   tracks_.tracks()[0].mask = MaskOf(12, 2);
   tracks_.DropLost(1, true);
   EXPECT_EQ(tracks_.tracks().size(), 1u);
