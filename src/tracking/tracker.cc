@@ -129,6 +129,7 @@ bool Tracker::TakeBackDoubtful() {
   features->BuildGrid(*camera_);
   extracted_ = std::move(features);
   extracted_removed_ = std::make_shared<const FrameFeatures>();
+  frame_.words.reset();  // of fewer features
   BeginAnew();
   return true;
 }

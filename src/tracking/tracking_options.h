@@ -102,7 +102,8 @@ struct TrackingOptions {
           "features less likely static never become map points");
     visit("readmit_probability", readmit_probability,
           "features that were removed as moving, but are at least this likely static, come back "
-          "where the map has a static point that looks like them; 1: never ...");
+          "where the map has a static point that looks like them, and all of them where tracking "
+          "would be lost without; 1: never ...");
     visit("readmit_point_probability", readmit_point_probability,
           "... and how likely static that point must be");
     visit("landmark_probability", landmark_probability,
