@@ -113,6 +113,21 @@ std::vector<Detection> HeadDecoder::Decode(const std::vector<NetworkOutput>& out
   return found;
 }
 
+std::vector<float> HeadDecoder::Scores(const std::vector<NetworkOutput>& outputs) const {
+  std::vector<float> scores;
+  const auto append = [&](const NetworkOutput& output, size_t first, auto&& score) {
+    for (size_t i = 0; i < Column::Positions(output); ++i) {
+      const Column column(output, i);
+      for (size_t k = 0; k < static_cast<size_t>(num_classes_); ++k)
+        scores.push_back(score(column[first + k]));
+    }
+  };
+  for (const RawScale& scale : scales_)
+    append(outputs[scale.klass], 0, [](float logit) { return 1 / (1 + std::exp(-logit)); });
+  if (scales_.empty()) append(outputs[0], kSides, [](float score) { return score; });
+  return scores;
+}
+
 void HeadDecoder::DecodeScale(const RawScale& scale, const std::vector<NetworkOutput>& outputs,
                               float confidence, bool every_class,
                               std::vector<Detection>& found) const {

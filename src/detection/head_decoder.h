@@ -27,6 +27,9 @@ class HeadDecoder {
   std::vector<Detection> Decode(const std::vector<NetworkOutput>& outputs, float confidence,
                                 bool every_class) const;
 
+  // The score of every class in every cell, in an order that is the same for every image.
+  std::vector<float> Scores(const std::vector<NetworkOutput>& outputs) const;
+
  private:
   struct RawScale {
     size_t box = 0;  // index of the output

@@ -1,0 +1,180 @@
+#include "detection/sensitive_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "detection/compiled_network.h"
+#include "detection/head_decoder.h"
+#include "detection/letterbox.h"
+#include "detection/onednn_detector.h"
+
+namespace msf {
+namespace {
+
+constexpr float kLeastScore = 0.05f;  // below it nobody looks at a detection
+// Only what helps most when it is left out alone is tried together with others.
+constexpr size_t kCandidatesPerValue = 2;
+
+using Scores = std::vector<std::vector<float>>;  // per image
+
+double ScoreError(const Scores& reference, const Scores& scores) {
+  double sum = 0, count = 0;
+  for (size_t i = 0; i < reference.size(); ++i) {
+    for (size_t k = 0; k < reference[i].size(); ++k) {
+      if (std::max(reference[i][k], scores[i][k]) < kLeastScore) continue;
+      const double difference = scores[i][k] - reference[i][k];
+      sum += difference * difference;
+      count += 1;
+    }
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+class Search {
+ public:
+  Search(const Graph& graph, const ActivationRanges& ranges, cv::Size size,
+         const SensitivityOptions& options, std::vector<cv::Mat> images,
+         const std::function<void(int, int)>& progress)
+      : graph_(graph),
+        ranges_(ranges),
+        size_(size),
+        options_(options),
+        images_(std::move(images)),
+        progress_(progress),
+        max_trials_(static_cast<int>(1 + ranges.size() + MaxValues() * MaxCandidates())) {}
+
+  StatusOr<SensitiveValues> Run() {
+    StatusOr<Scored> reference = Score(graph_, NetworkPrecision::kFloat32);
+    if (!reference.ok()) return reference.status();
+    reference_ = std::move(reference->scores);
+    StatusOr<Trial> all = Try(ranges_);
+    if (!all.ok()) return all.status();
+    SensitiveValues result{{}, all->error, all->error};
+    if (MaxValues() == 0) return result;
+    StatusOr<std::vector<std::string>> candidates = FindCandidates(*all);
+    if (!candidates.ok()) return candidates.status();
+    while (result.names.size() < MaxValues()) {
+      StatusOr<bool> added = AddBest(*candidates, result);
+      if (!added.ok()) return added.status();
+      if (!*added) break;
+    }
+    progress_(max_trials_, max_trials_);
+    return result;
+  }
+
+ private:
+  struct Scored {
+    Scores scores;
+    int num_int8_convolutions = 0;
+  };
+  struct Trial {
+    double error = 0;
+    int num_int8_convolutions = 0;
+  };
+
+  size_t MaxValues() const { return static_cast<size_t>(std::max(options_.max_values, 0)); }
+  size_t MaxCandidates() const { return MaxValues() * kCandidatesPerValue; }
+
+  StatusOr<Scored> Score(const Graph& graph, NetworkPrecision precision) const {
+    CompileOptions compile;
+    compile.width = size_.width;
+    compile.height = size_.height;
+    compile.precision = precision;
+    auto network = CompiledNetwork::Compile(graph, compile);
+    if (!network.ok()) return network.status();
+    StatusOr<HeadDecoder> decoder = HeadDecoder::Make((*network)->outputs(), graph.source);
+    if (!decoder.ok()) return decoder.status();
+    Scored result;
+    for (const cv::Mat& image : images_) {
+      Letterbox(image.size(), size_).Fill(image, (*network)->pixels());
+      MSF_RETURN_IF_ERROR((*network)->Run());
+      result.scores.push_back(decoder->Scores((*network)->outputs()));
+    }
+    result.num_int8_convolutions = (*network)->num_int8_convolutions();
+    return result;
+  }
+
+  StatusOr<Trial> Try(const ActivationRanges& ranges) {
+    Graph graph = graph_;
+    graph.metadata[kActivationRangesKey] = FormatActivationRanges(ranges);
+    StatusOr<Scored> scored = Score(graph, NetworkPrecision::kInt8);
+    if (!scored.ok()) return scored.status();
+    progress_(++num_trials_, max_trials_);
+    return Trial{ScoreError(reference_, scored->scores), scored->num_int8_convolutions};
+  }
+
+  // Those that gain most alone, of the values whose range matters at all.
+  StatusOr<std::vector<std::string>> FindCandidates(const Trial& all) {
+    std::vector<std::pair<double, std::string>> ranked;
+    for (const auto& [name, range] : ranges_) {
+      ActivationRanges others = ranges_;
+      others.erase(name);
+      StatusOr<Trial> trial = Try(others);
+      if (!trial.ok()) return trial.status();
+      if (trial->num_int8_convolutions < all.num_int8_convolutions)
+        ranked.emplace_back(trial->error, name);
+    }
+    std::sort(ranked.begin(), ranked.end());
+    std::vector<std::string> candidates;
+    for (size_t i = 0; i < std::min(ranked.size(), MaxCandidates()); ++i)
+      candidates.push_back(ranked[i].second);
+    return candidates;
+  }
+
+  // False when no candidate gains enough.
+  StatusOr<bool> AddBest(const std::vector<std::string>& candidates, SensitiveValues& result) {
+    ActivationRanges without = ranges_;
+    for (const std::string& name : result.names) without.erase(name);
+    std::string best;
+    double least = result.error_without * (1 - options_.min_gain);
+    for (const std::string& name : candidates) {
+      ActivationRanges fewer = without;
+      if (fewer.erase(name) == 0) continue;
+      StatusOr<Trial> trial = Try(fewer);
+      if (!trial.ok()) return trial.status();
+      if (trial->error >= least) continue;
+      least = trial->error;
+      best = name;
+    }
+    if (best.empty()) return false;
+    result.names.push_back(best);
+    result.error_without = least;
+    return true;
+  }
+
+  const Graph& graph_;
+  const ActivationRanges& ranges_;
+  const cv::Size size_;
+  const SensitivityOptions options_;
+  const std::vector<cv::Mat> images_;
+  const std::function<void(int, int)>& progress_;
+  const int max_trials_;
+  Scores reference_;
+  int num_trials_ = 0;
+};
+
+}  // namespace
+
+StatusOr<SensitiveValues> FindSensitiveValues(
+    const Graph& graph, const ActivationRanges& ranges, const CalibrationOptions& size,
+    const SensitivityOptions& options, int num_images,
+    const std::function<StatusOr<cv::Mat>(int)>& image,
+    const std::function<void(int, int)>& progress) {
+  DetectorOptions detector;
+  detector.width = size.width;
+  detector.height = size.height;
+  StatusOr<cv::Size> input = InputSizeFor(detector, graph);
+  if (!input.ok()) return input.status();
+  const int wanted = std::min(num_images, options.max_images);
+  std::vector<cv::Mat> images;
+  for (int i = 0; i < wanted; ++i) {
+    StatusOr<cv::Mat> picture = image(i * num_images / wanted);
+    if (!picture.ok()) return picture.status();
+    MSF_RETURN_IF_ERROR(CheckImage(*picture));
+    images.push_back(*std::move(picture));
+  }
+  return Search(graph, ranges, *input, options, std::move(images), progress).Run();
+}
+
+}  // namespace msf

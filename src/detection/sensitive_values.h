@@ -1,0 +1,39 @@
+// Finds the values inside a network that lose most when 8 bits represent them.
+#pragma once
+
+#include <functional>
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+#include "detection/calibration.h"
+#include "detection/graph.h"
+#include "detection/storage_plan.h"
+
+namespace msf {
+
+struct SensitivityOptions {
+  int max_values = 6;      // at most so many are named
+  double min_gain = 0.03;  // each lessens the error by at least this share of it
+  int max_images = 40;     // spread evenly over those given
+};
+
+struct SensitiveValues {
+  std::vector<std::string> names;  // the one that gains most first
+  // Root mean square of int8 scores minus float32 scores, over the cells and classes that either
+  // scores 0.05 or more: with all ranges, and without those of `names`.
+  double error_with = 0;
+  double error_without = 0;
+};
+
+// A value without a range stays in the higher precision, and so do the convolutions that read it.
+// Takes one after the other the value whose absence from `ranges` brings the int8 scores nearest to
+// those of float32. `image(i)` yields image i of `num_images`, 8-bit BGR or grey;
+// `progress(done, total)` is told of the trials, one network over all images each. Deterministic.
+StatusOr<SensitiveValues> FindSensitiveValues(
+    const Graph& graph, const ActivationRanges& ranges, const CalibrationOptions& size,
+    const SensitivityOptions& options, int num_images,
+    const std::function<StatusOr<cv::Mat>(int)>& image,
+    const std::function<void(int, int)>& progress);
+
+}  // namespace msf
