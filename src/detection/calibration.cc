@@ -47,7 +47,7 @@ double ValueHistogram::SquaredError(float low, float high) const {
 }
 
 ActivationRange ValueHistogram::BestRange() const {
-  ActivationRange best{low_, high_};
+  ActivationRange best{low_, high_, {}};
   double least = SquaredError(low_, high_);
   // One bound after the other: few values have long tails on both sides.
   for (float ActivationRange::*bound : {&ActivationRange::high, &ActivationRange::low}) {
@@ -66,6 +66,61 @@ ActivationRange ValueHistogram::BestRange() const {
   return best;
 }
 
+void ChannelMeans::Count(std::span<const float> numbers, size_t channels, bool channels_last) {
+  sums_.resize(channels, 0.0);
+  const size_t pixels = numbers.size() / channels;
+  for (size_t i = 0; i < numbers.size(); ++i) {
+    sums_[channels_last ? i % channels : i / pixels] += numbers[i];
+  }
+  count_ += static_cast<double>(pixels);
+}
+
+std::vector<float> ChannelMeans::Means() const {
+  std::vector<float> means;
+  for (const double sum : sums_) means.push_back(static_cast<float>(sum / count_));
+  return means;
+}
+
+namespace {
+
+// What calibration gathers of the values of one network.
+class Observations {
+ public:
+  void Widen(const CompiledNetwork& network) {
+    for (const NetworkOutput& value : network.inner_values())
+      histograms_[value.name].Widen(value.numbers());
+  }
+
+  void Count(CompiledNetwork& network, cv::Size size) {
+    for (const NetworkOutput& value : network.inner_values()) {
+      histograms_[value.name].Count(value.numbers());
+      means_[value.name].Count(value.numbers(), static_cast<size_t>(value.shape[1]),
+                               value.channels_last);
+    }
+    const size_t bytes = static_cast<size_t>(size.area()) * 3;
+    std::vector<float> pixels(network.pixels(), network.pixels() + bytes);
+    for (float& pixel : pixels) pixel /= 255.0f;
+    means_[network.input_name()].Count(pixels, 3, true);
+  }
+
+  ActivationRanges Ranges() const {
+    ActivationRanges ranges;
+    for (const auto& [name, means] : means_) {
+      const auto histogram = histograms_.find(name);
+      ranges[name] = histogram == histograms_.end() ? ActivationRange{0, 1, {}}
+                                                    : histogram->second.BestRange();
+      ranges[name].means = means.Means();
+    }
+    return ranges;
+  }
+
+ private:
+  std::map<std::string, ValueHistogram> histograms_;
+  std::map<std::string, ChannelMeans> means_;
+};
+
+}  // namespace
+
 StatusOr<ActivationRanges> Calibrate(const Graph& graph, const CalibrationOptions& options,
                                      int num_images,
                                      const std::function<StatusOr<cv::Mat>(int)>& image,
@@ -81,7 +136,7 @@ StatusOr<ActivationRanges> Calibrate(const Graph& graph, const CalibrationOption
   compile.keep_values = true;
   auto network = CompiledNetwork::Compile(graph, compile);
   if (!network.ok()) return network.status();
-  std::map<std::string, ValueHistogram> histograms;
+  Observations observations;
   for (const bool counting : {false, true}) {
     for (int i = 0; i < num_images; ++i) {
       StatusOr<cv::Mat> picture = image(i);
@@ -89,15 +144,11 @@ StatusOr<ActivationRanges> Calibrate(const Graph& graph, const CalibrationOption
       MSF_RETURN_IF_ERROR(CheckImage(*picture));
       Letterbox(picture->size(), *size).Fill(*picture, (*network)->pixels());
       MSF_RETURN_IF_ERROR((*network)->Run());
-      (*network)->VisitValues([&](const std::string& name, std::span<const float> numbers) {
-        counting ? histograms[name].Count(numbers) : histograms[name].Widen(numbers);
-      });
+      counting ? observations.Count(**network, *size) : observations.Widen(**network);
       progress(i + 1 + (counting ? num_images : 0));
     }
   }
-  ActivationRanges ranges;
-  for (const auto& [name, histogram] : histograms) ranges[name] = histogram.BestRange();
-  return ranges;
+  return observations.Ranges();
 }
 
 }  // namespace msf

@@ -37,9 +37,22 @@ struct CalibrationOptions {
   int height = 0;
 };
 
-// Runs the network in float32 over `num_images` images (twice) and returns the range of every
-// value. `image(i)` yields image i, 8-bit BGR or grey; `progress(done)` is told how many of 2 *
-// num_images runs are done.
+// The mean of every channel of one value, over all calibration images.
+class ChannelMeans {
+ public:
+  // `numbers` of one image of `channels` channels; in memory [height][width][channel] or
+  // [channel][height][width].
+  void Count(std::span<const float> numbers, size_t channels, bool channels_last);
+  std::vector<float> Means() const;
+
+ private:
+  std::vector<double> sums_;
+  double count_ = 0;  // per channel
+};
+
+// Runs the network in float32 over `num_images` images (twice) and returns range and means of every
+// value; of the input only the means matter. `image(i)` yields image i, 8-bit BGR or grey;
+// `progress(done)` is told how many of 2 * num_images runs are done.
 StatusOr<ActivationRanges> Calibrate(const Graph& graph, const CalibrationOptions& options,
                                      int num_images,
                                      const std::function<StatusOr<cv::Mat>(int)>& image,

@@ -38,12 +38,22 @@ TEST(ValueHistogram, CutsRareOutliers) {
   EXPECT_EQ(histogram.BestRange().low, 0);
 }
 
+TEST(ChannelMeans, KnowBothOrdersOfMemory) {
+  ChannelMeans means;
+  means.Count(std::vector<float>{1, 10, 3, 20}, 2, true);
+  means.Count(std::vector<float>{5, 7, 30, 40}, 2, false);
+  EXPECT_EQ(means.Means(), (std::vector<float>{4, 25}));
+}
+
 TEST(ActivationRanges, SurviveTheirTextForm) {
-  const ActivationRanges ranges{{"a/b", {-0.25f, 3.5f}}, {"c", {0, 1}}};
+  const ActivationRanges ranges{{"a/b", {-0.25f, 3.5f, {1.5f, -2.0f}}}, {"c", {0, 1, {}}}};
   const ActivationRanges back = ParseActivationRanges(FormatActivationRanges(ranges)).value();
   ASSERT_EQ(back.size(), 2u);
   EXPECT_EQ(back.at("a/b").high, 3.5f);
-  for (const char* damaged : {"", "[]", "{\"a\": 1}", "{\"a\": [2, 1]}", "{\"a\": [\"x\", 1]}"}) {
+  EXPECT_EQ(back.at("a/b").means, (std::vector<float>{1.5f, -2.0f}));
+  EXPECT_TRUE(back.at("c").means.empty());
+  for (const char* damaged : {"", "[]", "{\"a\": 1}", "{\"a\": [2, 1]}", "{\"a\": [\"x\", 1]}",
+                              "{\"a\": [1, 2, 3]}", "{\"a\": [1, 2, [\"x\"]]}"}) {
     EXPECT_FALSE(ParseActivationRanges(damaged).ok()) << damaged;
   }
 }
@@ -60,6 +70,8 @@ TEST(Calibrate, GivesEveryConvolutionARange) {
   const ActivationRanges ranges =
       Calibrate(graph, {96, 64}, 3, image, [&](int done) { last = done; }).value();
   EXPECT_EQ(last, 6);
+  ASSERT_EQ(ranges.at("images").means.size(), 3u);
+  EXPECT_NEAR(ranges.at("images").means[1], 90.0 / 255, 0.06);  // letterboxed: grey at the border
   graph.metadata[kActivationRangesKey] = FormatActivationRanges(ranges);
   for (const auto merging : {CompileOptions::Merging::kNever, CompileOptions::Merging::kAlways}) {
     CompileOptions compile{64, 96, NetworkPrecision::kInt8};

@@ -8,6 +8,7 @@
 #include "detection/network_builder.h"
 #include "detection/openmp_threads.h"
 #include "detection/specialize.h"
+#include "detection/weight_rounding.h"
 
 namespace msf {
 namespace {
@@ -38,6 +39,11 @@ Status CheckFloats(const Graph& graph) {
   return Status::Ok();
 }
 
+Storage InputStorage(bool float_input) {
+  if (float_input) return {};
+  return {NumberFormat::kUint8, true, 1.0f / 255.0f, 0};  // 8-bit pixels stand for 0..1
+}
+
 bool ShouldMerge(const CompileOptions& options) {
   if (options.merging != CompileOptions::Merging::kAuto)
     return options.merging == CompileOptions::Merging::kAlways;
@@ -55,11 +61,14 @@ StatusOr<std::unique_ptr<CompiledNetwork>> CompiledNetwork::Compile(const Graph&
   if (!ranges.ok()) return ranges.status();
   Fuse(*fixed);
   if (ShouldMerge(options)) MergeBranches(*fixed);
+  StoragePlan plan =
+      PlanStorage(*fixed, options.precision, *ranges, InputStorage(options.float_input));
+  MSF_RETURN_IF_ERROR(CorrectRoundedWeights(*fixed, plan, *ranges));
   const OpenMpThreadsScope threads(options.threads);
   std::unique_ptr<CompiledNetwork> network(new CompiledNetwork());
   network->graph_ = *std::move(fixed);
   network->threads_ = options.threads;
-  NetworkBuilder builder(*network, options, *ranges);
+  NetworkBuilder builder(*network, options, std::move(plan));
   if (Status status = builder.Build(); !status.ok()) return status;
   return network;
 }
@@ -74,9 +83,8 @@ Status CompiledNetwork::Run() {
   return Status::Ok();
 }
 
-void CompiledNetwork::VisitValues(
-    const std::function<void(const std::string&, std::span<const float>)>& visit) const {
-  for (const NamedNumbers& value : inner_values_) visit(value.name, value.numbers);
+const std::string& CompiledNetwork::input_name() const {
+  return graph_.value(graph_.inputs[0]).name;
 }
 
 }  // namespace msf

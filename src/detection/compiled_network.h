@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdlib>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -23,16 +22,18 @@ struct CompileOptions {
   // faster on this processor.
   enum class Merging { kNever, kAuto, kAlways } merging = Merging::kAuto;
   bool float_input = false;  // the image is given as floats (tests), not as 8-bit pixels
-  bool keep_values =
-      false;  // no value's memory is reused, so that VisitValues() sees all (calibration, tests)
+  bool keep_values = false;  // no value's memory is reused, so that inner_values() keep theirs
+                             // (calibration, tests)
 };
 
-// A result of the network as float32.
+// A result of the network as float32, or a value inside it.
 struct NetworkOutput {
   std::string name;
   Shape shape;                 // in the order of the model file, e.g. [1, C, H, W]
   bool channels_last = false;  // memory order of an image: [H][W][C] instead of [C][H][W]
   const float* data = nullptr;
+
+  std::span<const float> numbers() const { return {data, static_cast<size_t>(NumElements(shape))}; }
 };
 
 // Run() allocates nothing. Not to be used by two threads at once.
@@ -54,10 +55,9 @@ class CompiledNetwork {
   // In the order of the model file; valid until the next Run().
   const std::vector<NetworkOutput>& outputs() const { return outputs_; }
 
-  // With keep_values and kFloat32: calls visit(name, numbers) for every image-shaped value inside
-  // the network.
-  void VisitValues(
-      const std::function<void(const std::string&, std::span<const float>)>& visit) const;
+  // With keep_values and kFloat32: every image-shaped value inside the network.
+  const std::vector<NetworkOutput>& inner_values() const { return inner_values_; }
+  const std::string& input_name() const;
 
   // Memory for values and working space, in bytes, without weights.
   size_t activation_bytes() const { return activation_bytes_; }
@@ -71,10 +71,6 @@ class CompiledNetwork {
     void operator()(void* memory) const { std::free(memory); }
   };
   using Block = std::unique_ptr<void, FreeMemory>;
-  struct NamedNumbers {
-    std::string name;
-    std::span<const float> numbers;
-  };
 
   CompiledNetwork() = default;
 
@@ -86,11 +82,11 @@ class CompiledNetwork {
   void* input_ = nullptr;
   std::vector<std::unique_ptr<Step>> steps_;
   std::vector<NetworkOutput> outputs_;
-  std::vector<NamedNumbers> inner_values_;
+  std::vector<NetworkOutput> inner_values_;
 };
 
 // Metadata key under which a model file carries its activation ranges, and the text form: a JSON
-// object {"name": [low, high], ...}.
+// object {"name": [low, high, [mean of channel 0, ...]], ...}, means where they are known.
 inline constexpr const char* kActivationRangesKey = "msf_activation_ranges";
 std::string FormatActivationRanges(const ActivationRanges& ranges);
 StatusOr<ActivationRanges> ParseActivationRanges(const std::string& text);

@@ -13,11 +13,8 @@ void AddCrudeRanges(Graph& graph, const CompileOptions& options) {
   observing.precision = NetworkPrecision::kFloat32;
   observing.keep_values = true;
   ActivationRanges ranges;
-  CompiledNetwork::Compile(graph, observing)
-      .value()
-      ->VisitValues([&](const std::string& name, std::span<const float>) {
-        ranges[name] = {-0.3f, 6.0f};
-      });
+  const auto network = CompiledNetwork::Compile(graph, observing).value();
+  for (const NetworkOutput& value : network->inner_values()) ranges[value.name] = {-0.3f, 6.0f, {}};
   graph.metadata[kActivationRangesKey] = FormatActivationRanges(ranges);
 }
 

@@ -112,10 +112,12 @@ Graph Calibrated(Graph graph, CompileOptions options) {
   std::copy(image.floats.begin(), image.floats.end(), network->float_input());
   EXPECT_TRUE(network->Run().ok());
   ActivationRanges ranges;
-  network->VisitValues([&](const std::string& name, std::span<const float> numbers) {
-    ranges[name] = {*std::min_element(numbers.begin(), numbers.end()),
-                    *std::max_element(numbers.begin(), numbers.end())};
-  });
+  for (const NetworkOutput& value : network->inner_values()) {
+    const std::span<const float> numbers = value.numbers();
+    ranges[value.name] = {*std::min_element(numbers.begin(), numbers.end()),
+                          *std::max_element(numbers.begin(), numbers.end()),
+                          {}};
+  }
   graph.metadata[kActivationRangesKey] = FormatActivationRanges(ranges);
   return graph;
 }

@@ -6,40 +6,13 @@
 #include "detection/column_folding.h"
 #include "detection/dnnl_steps.h"
 #include "detection/dnnl_types.h"
+#include "detection/weight_rounding.h"
 #include "util/check.h"
 
 namespace msf {
 namespace {
 
 using dnnl::memory;
-
-// Weights as 8-bit numbers, one scale per output channel so that the largest becomes 127.
-struct QuantizedWeights {
-  std::vector<int8_t> values;
-  std::vector<float> scales;
-  std::vector<float> sums;  // of the stored values per output channel
-};
-
-QuantizedWeights QuantizeWeights(const Tensor& weights) {
-  const size_t channels = static_cast<size_t>(weights.shape[0]);
-  const size_t per_channel = weights.floats.size() / channels;
-  QuantizedWeights q;
-  q.values.resize(weights.floats.size());
-  for (size_t c = 0; c < channels; ++c) {
-    const float* w = weights.floats.data() + c * per_channel;
-    float largest = 0, sum = 0;
-    for (size_t i = 0; i < per_channel; ++i) largest = std::max(largest, std::abs(w[i]));
-    const float scale = largest > 0 ? largest / 127.0f : 1.0f;
-    for (size_t i = 0; i < per_channel; ++i) {
-      const float rounded = std::nearbyint(w[i] / scale);
-      q.values[c * per_channel + i] = static_cast<int8_t>(rounded);
-      sum += rounded;
-    }
-    q.scales.push_back(scale);
-    q.sums.push_back(sum);
-  }
-  return q;
-}
 
 // Builds oneDNN's list of operations behind the sum; successive linear maps are joined into one.
 class PostOps {
@@ -99,15 +72,15 @@ class ConvolutionStep : public Step {
     const bool int8 = spec.compute == NumberFormat::kUint8;
     const memory::desc source = ImageDesc(spec.input_shape, spec.input.format);
     const memory::desc target = ImageDesc(spec.output_shape, spec.output.format);
-    QuantizedWeights quantized;
-    if (int8) quantized = QuantizeWeights(*spec.weights);
+    RoundedWeights rounded;
+    if (int8) rounded = RoundWeights(*spec.weights);
 
     dnnl::primitive_attr attributes;
     attributes.set_scratchpad_mode(dnnl::scratchpad_mode::user);
     PostOps post_ops;
     AddEpilogue(buffers, post_ops);
     attributes.set_post_ops(post_ops.Finish());
-    if (int8) SetScales(quantized, attributes);
+    if (int8) SetScales(rounded, attributes);
 
     const Window& w = spec.window;
     const auto type = int8 ? memory::data_type::s8 : DataType(spec.compute);
@@ -123,8 +96,8 @@ class ConvolutionStep : public Step {
 
     arguments_ = {{DNNL_ARG_SRC, memory(source, engine, buffers.input)},
                   {DNNL_ARG_DST, memory(target, engine, buffers.output)},
-                  {DNNL_ARG_WEIGHTS, OrderWeights(quantized, chosen.weights_desc())},
-                  {DNNL_ARG_BIAS, MakeBias(quantized)},
+                  {DNNL_ARG_WEIGHTS, OrderWeights(rounded, chosen.weights_desc())},
+                  {DNNL_ARG_BIAS, MakeBias(rounded)},
                   {DNNL_ARG_SCRATCHPAD, scratch_}};
     for (const auto& [index, operand] : post_ops.operands()) {
       arguments_[DNNL_ARG_ATTR_MULTIPLE_POST_OP(index) | DNNL_ARG_SRC_1] = operand;
@@ -180,9 +153,9 @@ class ConvolutionStep : public Step {
     }
   }
 
-  void SetScales(const QuantizedWeights& quantized, dnnl::primitive_attr& attributes) const {
+  void SetScales(const RoundedWeights& rounded, dnnl::primitive_attr& attributes) const {
     std::vector<float> scales;
-    for (const float scale : quantized.scales) scales.push_back(scale * spec_.input.scale);
+    for (const float scale : rounded.scales) scales.push_back(scale * spec_.input.scale);
     attributes.set_output_scales(1 << 1, scales);
     // Where nothing is padded the zero point is a constant that the bias takes up, which leaves
     // oneDNN more implementations.
@@ -191,14 +164,14 @@ class ConvolutionStep : public Step {
     }
   }
 
-  memory OrderWeights(const QuantizedWeights& quantized, const memory::desc& wanted) {
+  memory OrderWeights(const RoundedWeights& rounded, const memory::desc& wanted) {
     const dnnl::engine& engine = CpuEngine();
-    const bool int8 = !quantized.values.empty();
+    const bool int8 = !rounded.values.empty();
     const auto tag = spec_.group == 1 ? memory::format_tag::oihw : memory::format_tag::goihw;
     const memory::desc plain(WeightDims(), int8 ? memory::data_type::s8 : memory::data_type::f32,
                              tag);
     const void* values =
-        int8 ? static_cast<const void*>(quantized.values.data()) : spec_.weights->floats.data();
+        int8 ? static_cast<const void*>(rounded.values.data()) : spec_.weights->floats.data();
     memory from(plain, engine, const_cast<void*>(values));  // read only
     memory ordered(wanted, engine);
     dnnl::reorder(from, ordered).execute(stream_, from, ordered);
@@ -207,12 +180,12 @@ class ConvolutionStep : public Step {
   }
 
   // With 8-bit weights oneDNN adds the bias before it applies the scales.
-  memory MakeBias(const QuantizedWeights& quantized) const {
+  memory MakeBias(const RoundedWeights& rounded) const {
     std::vector<float> bias(static_cast<size_t>(spec_.output_shape[1]), 0.0f);
     if (spec_.bias) bias = spec_.bias->floats;
-    for (size_t c = 0; c < quantized.scales.size(); ++c) {
-      bias[c] /= quantized.scales[c] * spec_.input.scale;
-      if (!Padded()) bias[c] -= static_cast<float>(spec_.input.zero_point) * quantized.sums[c];
+    for (size_t c = 0; c < rounded.scales.size(); ++c) {
+      bias[c] /= rounded.scales[c] * spec_.input.scale;
+      if (!Padded()) bias[c] -= static_cast<float>(spec_.input.zero_point) * rounded.sums[c];
     }
     memory result({{spec_.output_shape[1]}, memory::data_type::f32, memory::format_tag::a},
                   CpuEngine());

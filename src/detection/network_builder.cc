@@ -12,11 +12,6 @@
 namespace msf {
 namespace {
 
-Storage InputStorage(bool float_input) {
-  if (float_input) return {};
-  return {NumberFormat::kUint8, true, 1.0f / 255.0f, 0};  // 8-bit pixels stand for 0..1
-}
-
 // Zeroed memory on a cache line.
 void* Allocate(size_t bytes) {
   const size_t rounded = std::max<size_t>((bytes + 63) / 64 * 64, 64);
@@ -33,16 +28,15 @@ std::span<float> Floats(void* memory, const Shape& shape) {
 }  // namespace
 
 NetworkBuilder::NetworkBuilder(CompiledNetwork& network, const CompileOptions& options,
-                               const ActivationRanges& ranges)
+                               StoragePlan plan)
     : network_(network),
       graph_(network.graph_),
       keep_values_(options.keep_values),
-      input_storage_(InputStorage(options.float_input)),
-      plan_(PlanStorage(graph_, options.precision, ranges, input_storage_)) {}
+      plan_(std::move(plan)) {}
 
 Status NetworkBuilder::Build() {
   const ValueId input = graph_.inputs[0];
-  Write(input, input_storage_);
+  Write(input, storage(input));
   for (size_t i = 0; i < graph_.nodes.size(); ++i) AddNode(i);
   AddOutputs();
   if (keep_values_) {
@@ -316,8 +310,8 @@ void NetworkBuilder::NameInnerValues() {
     for (const ValueId id : node.outputs) {
       const Copy& copy = copies_.at(id).front();
       if (copy.storage.format != NumberFormat::kFloat32 || value(id).shape.size() != 4) continue;
-      network_.inner_values_.push_back(
-          {value(id).name, Floats(Address(copy.buffer), value(id).shape)});
+      network_.inner_values_.push_back({value(id).name, value(id).shape, copy.storage.channels_last,
+                                        static_cast<const float*>(Address(copy.buffer))});
     }
   }
 }

@@ -15,8 +15,7 @@ namespace msf {
 // First lists the steps with the buffers they use, then lays out memory, then makes the steps.
 class NetworkBuilder {
  public:
-  NetworkBuilder(CompiledNetwork& network, const CompileOptions& options,
-                 const ActivationRanges& ranges);
+  NetworkBuilder(CompiledNetwork& network, const CompileOptions& options, StoragePlan plan);
   Status Build();
 
  private:
@@ -62,7 +61,6 @@ class NetworkBuilder {
   CompiledNetwork& network_;
   const Graph& graph_;
   const bool keep_values_;
-  const Storage input_storage_;
   const StoragePlan plan_;
   std::vector<BufferLife> buffers_;
   std::map<ValueId, std::vector<Copy>> copies_;

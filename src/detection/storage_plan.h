@@ -13,10 +13,11 @@ namespace msf {
 
 enum class NetworkPrecision { kFloat32, kBfloat16, kInt8 };
 
-// The span of a value that 8-bit storage represents.
+// What is known of a value from calibration images.
 struct ActivationRange {
-  float low = 0;
+  float low = 0;  // the span that 8-bit storage represents
   float high = 0;
+  std::vector<float> means;  // per channel; empty when unknown
 };
 // By name of the value.
 using ActivationRanges = std::map<std::string, ActivationRange>;
