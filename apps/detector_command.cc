@@ -67,36 +67,35 @@ std::vector<fs::path> Spread(const std::vector<fs::path>& images, int count) {
   return chosen;
 }
 
-using ImageSource = std::function<StatusOr<cv::Mat>(int)>;
-
 ActivationRanges CalibrateWithProgress(const Graph& graph, const QuantizeArguments& arguments,
-                                       int count, const ImageSource& image) {
-  Progress progress("quantize", "runs", 2 * count);
+                                       const CalibrationImages& images) {
+  Progress progress("quantize", "runs", 2 * images.count);
   return Require(
-      Calibrate(graph, arguments.options, count, image, [&](int done) { progress.Update(done); }));
+      Calibrate(graph, arguments.options, images, [&](int done) { progress.Update(done); }));
 }
 
-SensitiveValues SensitiveWithProgress(const Graph& graph, const ActivationRanges& ranges,
-                                      const QuantizeArguments& arguments, int count,
-                                      const ImageSource& image) {
-  std::optional<Progress> progress;
-  return Require(FindSensitiveValues(graph, ranges, arguments.options, arguments.sensitivity, count,
-                                     image, [&](int done, int total) {
+SensitiveValues CompareWithProgress(const Graph& graph, const ActivationRanges& ranges,
+                                    const QuantizeArguments& arguments,
+                                    const CalibrationImages& images) {
+  std::optional<Progress> progress;  // the number of trials is not known before the first
+  return Require(FindSensitiveValues(graph, ranges, arguments.options, arguments.sensitivity,
+                                     images, [&](int done, int total) {
                                        if (!progress) progress.emplace("compare", "trials", total);
                                        progress->Update(done);
                                      }));
 }
 
 void Quantize(const QuantizeArguments& arguments) {
-  const std::vector<fs::path> images =
+  const std::vector<fs::path> files =
       Spread(Require(FindImages(arguments.images, arguments.list_file)), arguments.count);
   const std::string bytes = Require(ReadModelBytes(Require(FindModel(arguments.model))));
   const Graph graph = Require(ParseOnnx(bytes, arguments.model));
   ImageReader reader;
-  const auto image = [&](int i) { return reader.ReadColor(images[static_cast<size_t>(i)]); };
-  const int count = static_cast<int>(images.size());
-  ActivationRanges ranges = CalibrateWithProgress(graph, arguments, count, image);
-  const SensitiveValues sensitive = SensitiveWithProgress(graph, ranges, arguments, count, image);
+  const CalibrationImages images{static_cast<int>(files.size()), [&](int i) {
+                                   return reader.ReadColor(files[static_cast<size_t>(i)]);
+                                 }};
+  ActivationRanges ranges = CalibrateWithProgress(graph, arguments, images);
+  const SensitiveValues sensitive = CompareWithProgress(graph, ranges, arguments, images);
   for (const std::string& name : sensitive.names) ranges.erase(name);
   const std::string halved = Require(HalveOnnxWeights(bytes));
   const std::string calibrated =
@@ -104,10 +103,10 @@ void Quantize(const QuantizeArguments& arguments) {
   Require(WriteFileAtomically(arguments.out, calibrated));
   std::cout << fmt::format("{}: {:.2f} MB, {} activation ranges from {} images\n",
                            arguments.out.string(), static_cast<double>(calibrated.size()) * 1e-6,
-                           ranges.size(), count);
+                           ranges.size(), images.count);
   std::cout << fmt::format(
       "not in 8 bits: {}; that brings the error of scores from {:.4f} to {:.4f}\n",
-      sensitive.names.empty() ? "nothing more than usual"
+      sensitive.names.empty() ? "only the heads"
                               : fmt::format("{}", fmt::join(sensitive.names, ", ")),
       sensitive.error_with, sensitive.error_without);
 }

@@ -10,6 +10,7 @@ namespace {
 // Four digits are more than the means of other images would share.
 std::vector<double> Rounded(const std::vector<float>& means) {
   std::vector<double> rounded;
+  rounded.reserve(means.size());
   for (const float mean : means) rounded.push_back(std::stod(fmt::format("{:.4g}", mean)));
   return rounded;
 }

@@ -122,8 +122,7 @@ class Observations {
 }  // namespace
 
 StatusOr<ActivationRanges> Calibrate(const Graph& graph, const CalibrationOptions& options,
-                                     int num_images,
-                                     const std::function<StatusOr<cv::Mat>(int)>& image,
+                                     const CalibrationImages& images,
                                      const std::function<void(int)>& progress) {
   DetectorOptions detector;
   detector.width = options.width;
@@ -138,14 +137,14 @@ StatusOr<ActivationRanges> Calibrate(const Graph& graph, const CalibrationOption
   if (!network.ok()) return network.status();
   Observations observations;
   for (const bool counting : {false, true}) {
-    for (int i = 0; i < num_images; ++i) {
-      StatusOr<cv::Mat> picture = image(i);
+    for (int i = 0; i < images.count; ++i) {
+      StatusOr<cv::Mat> picture = images.read(i);
       if (!picture.ok()) return picture.status();
       MSF_RETURN_IF_ERROR(CheckImage(*picture));
       Letterbox(picture->size(), *size).Fill(*picture, (*network)->pixels());
       MSF_RETURN_IF_ERROR((*network)->Run());
       counting ? observations.Count(**network, *size) : observations.Widen(**network);
-      progress(i + 1 + (counting ? num_images : 0));
+      progress(i + 1 + (counting ? images.count : 0));
     }
   }
   return observations.Ranges();

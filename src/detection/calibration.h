@@ -50,12 +50,16 @@ class ChannelMeans {
   double count_ = 0;  // per channel
 };
 
-// Runs the network in float32 over `num_images` images (twice) and returns range and means of every
-// value; of the input only the means matter. `image(i)` yields image i, 8-bit BGR or grey;
-// `progress(done)` is told how many of 2 * num_images runs are done.
+struct CalibrationImages {
+  int count = 0;
+  std::function<StatusOr<cv::Mat>(int)> read;  // image i: 8-bit BGR or grey
+};
+
+// Runs the network in float32 over all images (twice) and returns range and means of every value;
+// of the input only the means matter. `progress(done)` is told how many of 2 * images.count runs
+// are done.
 StatusOr<ActivationRanges> Calibrate(const Graph& graph, const CalibrationOptions& options,
-                                     int num_images,
-                                     const std::function<StatusOr<cv::Mat>(int)>& image,
+                                     const CalibrationImages& images,
                                      const std::function<void(int)>& progress);
 
 }  // namespace msf

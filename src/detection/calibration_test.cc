@@ -68,7 +68,7 @@ TEST(Calibrate, GivesEveryConvolutionARange) {
     return cv::Mat(50, 80, CV_8UC3, cv::Scalar(40 * i, 90, 200 - 30 * i));
   };
   const ActivationRanges ranges =
-      Calibrate(graph, {96, 64}, 3, image, [&](int done) { last = done; }).value();
+      Calibrate(graph, {96, 64}, {3, image}, [&](int done) { last = done; }).value();
   EXPECT_EQ(last, 6);
   ASSERT_EQ(ranges.at("images").means.size(), 3u);
   EXPECT_NEAR(ranges.at("images").means[1], 90.0 / 255, 0.06);  // letterboxed: grey at the border
@@ -83,7 +83,7 @@ TEST(Calibrate, GivesEveryConvolutionARange) {
     EXPECT_EQ(compiled->num_convolutions() - compiled->num_int8_convolutions(), higher);
   }
   const auto failing = [](int) -> StatusOr<cv::Mat> { return Status::Error("x.jpg: damaged"); };
-  EXPECT_EQ(Calibrate(graph, {96, 64}, 1, failing, [](int) {}).message(), "x.jpg: damaged");
+  EXPECT_EQ(Calibrate(graph, {96, 64}, {1, failing}, [](int) {}).message(), "x.jpg: damaged");
 }
 
 }  // namespace

@@ -156,25 +156,25 @@ class Search {
 
 }  // namespace
 
-StatusOr<SensitiveValues> FindSensitiveValues(
-    const Graph& graph, const ActivationRanges& ranges, const CalibrationOptions& size,
-    const SensitivityOptions& options, int num_images,
-    const std::function<StatusOr<cv::Mat>(int)>& image,
-    const std::function<void(int, int)>& progress) {
+StatusOr<SensitiveValues> FindSensitiveValues(const Graph& graph, const ActivationRanges& ranges,
+                                              const CalibrationOptions& size,
+                                              const SensitivityOptions& options,
+                                              const CalibrationImages& images,
+                                              const std::function<void(int, int)>& progress) {
   DetectorOptions detector;
   detector.width = size.width;
   detector.height = size.height;
   StatusOr<cv::Size> input = InputSizeFor(detector, graph);
   if (!input.ok()) return input.status();
-  const int wanted = std::min(num_images, options.max_images);
-  std::vector<cv::Mat> images;
+  const int wanted = std::min(images.count, options.max_images);
+  std::vector<cv::Mat> pictures;
   for (int i = 0; i < wanted; ++i) {
-    StatusOr<cv::Mat> picture = image(i * num_images / wanted);
+    StatusOr<cv::Mat> picture = images.read(i * images.count / wanted);
     if (!picture.ok()) return picture.status();
     MSF_RETURN_IF_ERROR(CheckImage(*picture));
-    images.push_back(*std::move(picture));
+    pictures.push_back(*std::move(picture));
   }
-  return Search(graph, ranges, *input, options, std::move(images), progress).Run();
+  return Search(graph, ranges, *input, options, std::move(pictures), progress).Run();
 }
 
 }  // namespace msf

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <opencv2/core/mat.hpp>
 #include <string>
 #include <vector>
 
@@ -28,12 +27,12 @@ struct SensitiveValues {
 
 // A value without a range stays in the higher precision, and so do the convolutions that read it.
 // Takes one after the other the value whose absence from `ranges` brings the int8 scores nearest to
-// those of float32. `image(i)` yields image i of `num_images`, 8-bit BGR or grey;
-// `progress(done, total)` is told of the trials, one network over all images each. Deterministic.
-StatusOr<SensitiveValues> FindSensitiveValues(
-    const Graph& graph, const ActivationRanges& ranges, const CalibrationOptions& size,
-    const SensitivityOptions& options, int num_images,
-    const std::function<StatusOr<cv::Mat>(int)>& image,
-    const std::function<void(int, int)>& progress);
+// those of float32. `progress(done, total)` is told of the trials, one network over all images
+// each. Deterministic.
+StatusOr<SensitiveValues> FindSensitiveValues(const Graph& graph, const ActivationRanges& ranges,
+                                              const CalibrationOptions& size,
+                                              const SensitivityOptions& options,
+                                              const CalibrationImages& images,
+                                              const std::function<void(int, int)>& progress);
 
 }  // namespace msf

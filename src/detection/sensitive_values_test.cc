@@ -11,7 +11,6 @@ namespace msf {
 namespace {
 
 constexpr CalibrationOptions kSize{96, 64};
-constexpr int kImages = 3;
 
 StatusOr<cv::Mat> TestImage(int i) {
   cv::Mat image(50, 80, CV_8UC3, cv::Scalar(40 * i, 90, 200 - 30 * i));
@@ -19,10 +18,12 @@ StatusOr<cv::Mat> TestImage(int i) {
   return image;
 }
 
+const CalibrationImages kImages{3, TestImage};
+
 Graph TestGraph() { return TestNetwork(TestNetworkOptions()).builder().Parse().value(); }
 
 ActivationRanges Ranges(const Graph& graph) {
-  return Calibrate(graph, kSize, kImages, TestImage, [](int) {}).value();
+  return Calibrate(graph, kSize, kImages, [](int) {}).value();
 }
 
 // How many convolutions run in 8 bits with these ranges.
@@ -46,7 +47,7 @@ TEST(FindSensitiveValues, NamesTheValueWhoseStepsAreTooCoarse) {
   ranges[spoiled].high *= 2000;
   int done = 0, total = -1;
   const SensitiveValues found =
-      FindSensitiveValues(graph, ranges, kSize, SensitivityOptions(), kImages, TestImage,
+      FindSensitiveValues(graph, ranges, kSize, SensitivityOptions(), kImages,
                           [&](int trials, int all) {
                             EXPECT_GE(trials, done);
                             done = trials;
@@ -71,8 +72,7 @@ TEST(FindSensitiveValues, NamesNoMoreThanWanted) {
   SensitivityOptions options;
   options.max_values = 0;
   const auto find = [&] {
-    return FindSensitiveValues(graph, ranges, kSize, options, kImages, TestImage, [](int, int) {})
-        .value();
+    return FindSensitiveValues(graph, ranges, kSize, options, kImages, [](int, int) {}).value();
   };
   EXPECT_TRUE(find().names.empty());
   options.max_values = 2;
@@ -85,8 +85,8 @@ TEST(FindSensitiveValues, NamesNoMoreThanWanted) {
 TEST(FindSensitiveValues, SaysWhichImageIsDamaged) {
   const Graph graph = TestGraph();
   const auto failing = [](int) -> StatusOr<cv::Mat> { return Status::Error("x.jpg: damaged"); };
-  const auto found = FindSensitiveValues(graph, Ranges(graph), kSize, SensitivityOptions(), 1,
-                                         failing, [](int, int) {});
+  const auto found = FindSensitiveValues(graph, Ranges(graph), kSize, SensitivityOptions(),
+                                         {1, failing}, [](int, int) {});
   ASSERT_FALSE(found.ok());
   EXPECT_EQ(found.status().message(), "x.jpg: damaged");
 }
