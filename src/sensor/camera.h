@@ -22,6 +22,8 @@ struct Camera {
   // Rows of the colour image are exposed one after the other: so long after the first row the last
   // one is, s. 0: all at once (global shutter).
   double rolling_shutter_s = 0;
+  // The time stamp of a colour image is so long after the exposure of its middle row, s.
+  double stamp_lag_s = 0;
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
@@ -42,6 +44,10 @@ struct Camera {
     visit("rolling_shutter_s", rolling_shutter_s,
           "time from the exposure of the first row of the colour image to that of the last, s; 0: "
           "all at once");
+    visit(
+        "stamp_lag_s", stamp_lag_s,
+        "the time stamp of a colour image is so long after the exposure of its middle row, s; the "
+        "trajectory tells where the camera was at the time stamps");
   }
   Status Check() const;
 

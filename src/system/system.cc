@@ -5,6 +5,7 @@
 
 #include "loop_closing/full_bundle.h"
 #include "system/worker.h"
+#include "tracking/stamp_lag.h"
 #include "tracking/tracker.h"
 #include "util/data_path.h"
 
@@ -253,7 +254,7 @@ Reconstruction System::Impl::Finish() {
 
 Reconstruction System::Impl::Resolve(const Map& map) const {
   Reconstruction result;
-  result.frames = recorder_.Resolve(map);
+  result.frames = UndoStampLag(recorder_.Resolve(map), camera_->stamp_lag_s);
   std::map<MapId, int> frames_per_map;
   for (const ResolvedFrame& frame : result.frames) {
     if (frame.T_wc) ++frames_per_map[frame.map_id];

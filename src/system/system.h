@@ -26,10 +26,12 @@ struct ColoredPoint {
 
 // What remains when the last frame has been seen: everything in the coordinates of the final map.
 struct Reconstruction {
-  std::vector<ResolvedFrame> frames;    // one per frame given to Track(), in order
-  std::vector<KeyFramePose> keyframes;  // of all maps, ascending by id
-  std::vector<ColoredPoint> points;     // of the main map
-  MapId main_map;                       // the one with most frames
+  // One per frame given to Track(), in order, with the pose at its time stamp.
+  std::vector<ResolvedFrame> frames;
+  // Of all maps, ascending by id, with the pose that their images show (Camera::stamp_lag_s).
+  std::vector<KeyFramePose> keyframes;
+  std::vector<ColoredPoint> points;  // of the main map
+  MapId main_map;                    // the one with most frames
   int num_maps = 0;
   int num_loops = 0;   // loops closed
   int num_merges = 0;  // maps merged
