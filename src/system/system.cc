@@ -254,7 +254,9 @@ Reconstruction System::Impl::Finish() {
 
 Reconstruction System::Impl::Resolve(const Map& map) const {
   Reconstruction result;
-  result.frames = UndoStampLag(recorder_.Resolve(map), camera_->stamp_lag_s);
+  result.frames = recorder_.Resolve(map);
+  if (options_.tracking.undo_stamp_lag)
+    result.frames = UndoStampLag(result.frames, camera_->stamp_lag_s);
   std::map<MapId, int> frames_per_map;
   for (const ResolvedFrame& frame : result.frames) {
     if (frame.T_wc) ++frames_per_map[frame.map_id];

@@ -48,6 +48,7 @@ struct TrackingOptions {
   int local_search_rounds = 2;
   double local_match_ratio = 0.8;
   bool undo_rolling_shutter = true;
+  bool undo_stamp_lag = true;
   int min_local_inliers = 30;
   int min_local_inliers_relocalized = 50;
   double recently_lost_s = 3;
@@ -91,6 +92,9 @@ struct TrackingOptions {
           "best to second best at the same level, matching the local map");
     visit("undo_rolling_shutter", undo_rolling_shutter,
           "points go where the middle row would show them (camera.rolling_shutter_s)");
+    visit("undo_stamp_lag", undo_stamp_lag,
+          "the trajectory tells where the camera was at the time stamps, not when its images were "
+          "exposed (camera.stamp_lag_s)");
     visit("min_local_inliers", min_local_inliers, "inliers with which a frame counts as tracked");
     visit("min_local_inliers_relocalized", min_local_inliers_relocalized,
           "the same within a second of relocalisation");
