@@ -27,8 +27,8 @@ double Distance(const Rigid3d& a, const Rigid3d& b) { return (a.Inverse() * b).L
 class UndoStampLagTest : public testing::TestWithParam<double> {};
 
 TEST_P(UndoStampLagTest, GivesPosesAtTheTimeStamps) {
-  std::vector<ResolvedFrame> frames;
-  for (int i = 0; i < 5; ++i) frames.push_back(FrameAt(i / 30.0, GetParam()));
+  std::vector<ResolvedFrame> frames(5);
+  for (int i = 0; i < 5; ++i) frames[i] = FrameAt(i / 30.0, GetParam());
   const std::vector<ResolvedFrame> moved = UndoStampLag(frames, GetParam());
   ASSERT_EQ(moved.size(), frames.size());
   for (const ResolvedFrame& frame : moved)
