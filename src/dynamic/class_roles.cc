@@ -1,6 +1,8 @@
 #include "dynamic/class_roles.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <map>
 
 #include "detection/class_names.h"
 
@@ -11,6 +13,23 @@ bool Lists(const std::vector<std::string>& list, const std::string& name) {
   return std::any_of(list.begin(), list.end(), [&](const std::string& listed) {
     return CanonicalClassName(listed) == CanonicalClassName(name);
   });
+}
+
+// "cat=0.6" becomes {"cat", 0.6}, with the name in its canonical form.
+StatusOr<std::map<std::string, double>> ReadScores(const std::vector<std::string>& class_scores) {
+  std::map<std::string, double> scores;
+  for (const std::string& text : class_scores) {
+    const size_t equals = text.find('=');
+    char* end = nullptr;
+    const std::string number = equals == std::string::npos ? "" : text.substr(equals + 1);
+    const double score = std::strtod(number.c_str(), &end);
+    if (number.empty() || *end != '\0' || !(score >= 0 && score <= 1)) {
+      return Status::Error("dynamic.class_scores: '" + text +
+                           "' is not a class and its score, such as cat=0.6");
+    }
+    scores[CanonicalClassName(text.substr(0, equals))] = score;
+  }
+  return scores;
 }
 
 }  // namespace
@@ -29,6 +48,8 @@ const char* ToString(ObjectKind kind) {
 
 StatusOr<ClassRoles> ClassRoles::Create(const DynamicOptions& options,
                                         const std::vector<std::string>& class_names) {
+  const StatusOr<std::map<std::string, double>> scores = ReadScores(options.class_scores);
+  if (!scores.ok()) return scores.status();
   ClassRoles roles;
   roles.names_ = class_names;
   for (const std::string& name : class_names) {
@@ -36,6 +57,10 @@ StatusOr<ClassRoles> ClassRoles::Create(const DynamicOptions& options,
     if (Lists(options.potential_classes, name)) kind = ObjectKind::kPotential;
     if (Lists(options.known_classes, name)) kind = ObjectKind::kKnown;
     roles.kinds_.push_back(kind);
+    const auto own = scores->find(CanonicalClassName(name));
+    const double of_kind =
+        kind == ObjectKind::kKnown ? options.tracks.start_score : options.tracks.potential_score;
+    roles.start_scores_.push_back(own == scores->end() ? of_kind : own->second);
   }
   const bool any = std::any_of(roles.kinds_.begin(), roles.kinds_.end(),
                                [](const auto& kind) { return kind.has_value(); });
@@ -51,6 +76,8 @@ std::optional<ObjectKind> ClassRoles::KindOf(int class_id) const {
   if (class_id < 0 || class_id >= static_cast<int>(kinds_.size())) return std::nullopt;
   return kinds_[class_id];
 }
+
+double ClassRoles::StartScoreOf(int class_id) const { return start_scores_.at(class_id); }
 
 std::string ClassRoles::NameOf(int class_id) const {
   if (class_id < 0 || class_id >= static_cast<int>(names_.size())) return "mover";

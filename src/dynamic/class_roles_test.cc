@@ -43,6 +43,30 @@ TEST(ClassRoles, ADetectorWithoutAnyListedClassIsAnError) {
   EXPECT_THAT(roles.message(), testing::HasSubstr("dynamic.known_classes"));
 }
 
+TEST(ClassRoles, AClassMayHaveAScoreOfItsOwn) {
+  DynamicOptions options;
+  options.tracks.start_score = 0.2;
+  options.tracks.potential_score = 0.3;
+  options.class_scores = {"Couch=0.7", "cat=0.6"};
+  const StatusOr<ClassRoles> roles =
+      ClassRoles::Create(options, {"person", "cat", "sofa", "chair"});
+  ASSERT_TRUE(roles.ok());
+  EXPECT_EQ(roles->StartScoreOf(0), 0.2);
+  EXPECT_EQ(roles->StartScoreOf(1), 0.6);
+  EXPECT_EQ(roles->StartScoreOf(2), 0.7) << "a couch by its other name";
+  EXPECT_EQ(roles->StartScoreOf(3), 0.3);
+}
+
+TEST(ClassRoles, AScoreThatCannotBeReadIsAnError) {
+  for (const char* text : {"cat", "cat=", "cat=high", "cat=1.5", "cat=-1", "cat=0.5x"}) {
+    DynamicOptions options;
+    options.class_scores = {text};
+    const StatusOr<ClassRoles> roles = ClassRoles::Create(options, {"cat"});
+    ASSERT_FALSE(roles.ok()) << text;
+    EXPECT_THAT(roles.message(), testing::HasSubstr(text));
+  }
+}
+
 TEST(ClassRoles, NoDetectorIsFine) {
   EXPECT_TRUE(ClassRoles::Create({}, {}).ok());
   EXPECT_EQ(ClassRoles().KindOf(0), std::nullopt);

@@ -96,9 +96,7 @@ void DynamicFilter::DropInBoxes(const Work& work, DynamicResult& result) const {
   result.mask = cv::Mat1b(work.view.depth.rows(), work.view.depth.cols(), static_cast<uint8_t>(0));
   for (const Detection& detection : work.detections) {
     const std::optional<ObjectKind> kind = tracks_.roles().KindOf(detection.class_id);
-    if (!kind || detection.score < (*kind == ObjectKind::kKnown ? options_.tracks.start_score
-                                                                : options_.tracks.potential_score))
-      continue;
+    if (!kind || detection.score < tracks_.roles().StartScoreOf(detection.class_id)) continue;
     result.mask |= WholeBox(work.view.depth, detection.box).cells;
     result.objects.push_back({.name = tracks_.roles().NameOf(detection.class_id),
                               .kind = *kind,

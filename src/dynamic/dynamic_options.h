@@ -191,6 +191,7 @@ struct DynamicOptions {
   std::vector<std::string> potential_classes = {
       "chair", "couch",    "potted plant", "bottle",  "tv",       "laptop",     "book",
       "cup",   "suitcase", "backpack",     "handbag", "umbrella", "sports ball"};
+  std::vector<std::string> class_scores;
   double paper_flow_px = 1.5;
   int paper_window_px = 5;
   bool depth_split = true;
@@ -216,6 +217,9 @@ struct DynamicOptions {
         "off; boxes: drop what is in a box; paper: boxes, then raw flow above paper_flow_px; full");
     visit("known_classes", known_classes, "classes that move by themselves");
     visit("potential_classes", potential_classes, "classes that people move");
+    visit("class_scores", class_scores,
+          "scores with which detections of single classes start an object, such as [cat=0.6]; for "
+          "the others tracks.start_score and tracks.potential_score");
     visit("paper_flow_px", paper_flow_px, "mode paper: L, largest flow of a static point, px");
     visit("paper_window_px", paper_window_px, "mode paper: side of the flow's window, px");
     visit("depth_split", depth_split, "inside a box only the near cluster is the object");

@@ -60,25 +60,21 @@ std::optional<ImageBox> ObjectTrack::BoxAt(FrameId frame) const {
   return std::nullopt;
 }
 
-double ObjectTracks::StartScore(ObjectKind kind) const {
-  return kind == ObjectKind::kKnown ? options_.start_score : options_.potential_score;
-}
-
 ObjectTrack* ObjectTracks::FindMatch(const Detection& detection, ObjectKind kind,
                                      const std::vector<uint8_t>& taken) {
   constexpr float kMostlyInside = 0.7f, kSameBox = 0.5f;
+  const double start_score = roles_.StartScoreOf(detection.class_id);
   ObjectTrack* best = nullptr;
   float best_overlap = 0;
   for (size_t t = 0; t < taken.size(); ++t) {
     ObjectTrack& track = tracks_[t];
     // A mover of unknown class may turn out to be of a known one.
-    const bool may_turn_out =
-        track.kind == ObjectKind::kUnknown && detection.score >= StartScore(kind);
+    const bool may_turn_out = track.kind == ObjectKind::kUnknown && detection.score >= start_score;
     if (taken[t] || (track.kind != kind && !may_turn_out)) continue;
     const float iou = IntersectionOverUnion(detection.box, track.box);
     const float contained = Containment(detection.box, track.box);
     // A weak detection must look like the object itself.
-    const bool weak = detection.score < StartScore(kind);
+    const bool weak = detection.score < start_score;
     if (weak ? iou < kSameBox : iou < options_.min_iou && contained < kMostlyInside) continue;
     const float overlap = iou + 0.1f * contained;
     if (overlap > best_overlap) {
@@ -106,7 +102,7 @@ bool ObjectTracks::IsEcho(const Detection& detection, const std::vector<uint8_t>
 bool ObjectTracks::MayTake(const Detection& detection, FrameId frame) const {
   const std::optional<ObjectKind> kind = roles_.KindOf(detection.class_id);
   if (!kind || detection.score < options_.continue_score) return false;
-  if (detection.score >= StartScore(*kind)) return true;
+  if (detection.score >= roles_.StartScoreOf(detection.class_id)) return true;
   return std::any_of(tracks_.begin(), tracks_.end(), [&](const ObjectTrack& track) {
     const ImageBox box = track.BoxAt(frame).value_or(track.box);
     return track.kind == *kind && IntersectionOverUnion(detection.box, box) > 0;
@@ -121,7 +117,7 @@ void ObjectTracks::TakeDetections(const std::vector<Detection>& detections, doub
     if (!kind || detection.score < options_.continue_score || IsEcho(detection, taken)) continue;
     ObjectTrack* track = FindMatch(detection, *kind, taken);
     if (!track) {
-      if (detection.score < StartScore(*kind)) continue;
+      if (detection.score < roles_.StartScoreOf(detection.class_id)) continue;
       track = &tracks_.emplace_back();
       track->id = next_id_++;
       track->state = *kind == ObjectKind::kKnown ? MotionState::kMoving : MotionState::kUncertain;

@@ -80,7 +80,6 @@ class ObjectTracks {
   void RememberBoxes(FrameId frame, size_t max_history);
 
  private:
-  double StartScore(ObjectKind kind) const;
   ObjectTrack* FindMatch(const Detection& detection, ObjectKind kind,
                          const std::vector<uint8_t>& taken);
   double BridgeOf(const ObjectTrack& track) const;
