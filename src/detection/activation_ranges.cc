@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "detection/compiled_network.h"
@@ -44,7 +45,7 @@ StatusOr<ActivationRanges> ParseActivationRanges(const std::string& text) {
     ranges[name] = {low, high, {}};
     if (range.size() == 2) continue;
     for (const nlohmann::json& mean : range[2]) {
-      if (!mean.is_number()) return damaged;
+      if (!mean.is_number() || !(std::abs(mean.get<double>()) < 1e30)) return damaged;
       ranges[name].means.push_back(mean.get<float>());
     }
   }

@@ -52,8 +52,9 @@ TEST(ActivationRanges, SurviveTheirTextForm) {
   EXPECT_EQ(back.at("a/b").high, 3.5f);
   EXPECT_EQ(back.at("a/b").means, (std::vector<float>{1.5f, -2.0f}));
   EXPECT_TRUE(back.at("c").means.empty());
-  for (const char* damaged : {"", "[]", "{\"a\": 1}", "{\"a\": [2, 1]}", "{\"a\": [\"x\", 1]}",
-                              "{\"a\": [1, 2, 3]}", "{\"a\": [1, 2, [\"x\"]]}"}) {
+  for (const char* damaged :
+       {"", "[]", "{\"a\": 1}", "{\"a\": [2, 1]}", "{\"a\": [\"x\", 1]}", "{\"a\": [1, 2, 3]}",
+        "{\"a\": [1, 2, [\"x\"]]}", "{\"a\": [1, 2, [1e300]]}"}) {
     EXPECT_FALSE(ParseActivationRanges(damaged).ok()) << damaged;
   }
 }

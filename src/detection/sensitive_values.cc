@@ -73,8 +73,12 @@ class Search {
     int num_int8_convolutions = 0;
   };
 
-  size_t MaxValues() const { return static_cast<size_t>(std::max(options_.max_values, 0)); }
-  size_t MaxCandidates() const { return MaxValues() * kCandidatesPerValue; }
+  size_t MaxValues() const {
+    return std::min(static_cast<size_t>(std::max(options_.max_values, 0)), ranges_.size());
+  }
+  size_t MaxCandidates() const {
+    return std::min(MaxValues() * kCandidatesPerValue, ranges_.size());
+  }
 
   StatusOr<Scored> Score(const Graph& graph, NetworkPrecision precision) const {
     CompileOptions compile;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "detection/calibration.h"
 #include "detection/compiled_network.h"
 #include "detection/test_onnx_builder.h"
 
@@ -46,12 +47,9 @@ std::vector<float> MeanOutputs(const Graph& graph, NetworkPrecision precision,
   for (int i = 0; i < 32 * 32 * 3; ++i) network->pixels()[i] = static_cast<uint8_t>(i * 7919 % 256);
   EXPECT_TRUE(network->Run().ok());
   const auto means = [](const NetworkOutput& value) {
-    std::vector<float> sums(static_cast<size_t>(value.shape[1]), 0.0f);
-    const size_t channels = sums.size(), pixels = value.numbers().size() / channels;
-    for (size_t i = 0; i < value.numbers().size(); ++i)
-      sums[value.channels_last ? i % channels : i / pixels] += value.numbers()[i];
-    for (float& sum : sums) sum /= static_cast<float>(pixels);
-    return sums;
+    ChannelMeans channels;
+    channels.Count(value.numbers(), static_cast<size_t>(value.shape[1]), value.channels_last);
+    return channels.Means();
   };
   if (ranges != nullptr) {
     for (const NetworkOutput& value : network->inner_values()) {
