@@ -18,7 +18,7 @@ std::vector<BundleObservation> ObservationsOf(const MapPoint& point, const Map& 
     const FrameFeatures& features = *map.FindKeyFrame(seen.keyframe)->features;
     const double weight = std::min(point.static_weight, features.static_weight[seen.feature]);
     BundleObservation observation{
-        ObserveFeature(features, seen.feature, map.levels(), noise, weight)};
+        ObserveFeature(features, seen.feature, map.camera(), map.levels(), noise, weight)};
     observation.pose = pose->second;
     observation.point = point_index;
     observations.push_back(observation);

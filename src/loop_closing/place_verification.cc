@@ -10,8 +10,8 @@
 namespace msf {
 namespace {
 
-// A depth this many sigmas off its prediction is another surface's.
-constexpr double kMaxDepthSigmas = 5;
+// A disparity that is off by this, at level 0, and by its noise, is another surface's.
+constexpr double kSurfaceGap_px = 1.2;
 
 std::vector<uint8_t> FlagPoints(const KeyFrameView& view) {
   std::vector<uint8_t> has_point(view.points.size());
@@ -182,9 +182,10 @@ PlaceVerifier::Found PlaceVerifier::Project(const KeyFrameView& view, const Rigi
 
 bool PlaceVerifier::DepthAgrees(const FrameFeatures& features, int feature,
                                 double disparity_px) const {
-  const ImageObservation seen = ObserveFeature(features, feature, levels_, noise_, 1);
-  const double error_px = disparity_px - seen.disparity_px;
-  return seen.inv_sigma2_disparity * error_px * error_px <= kMaxDepthSigmas * kMaxDepthSigmas;
+  const ImageObservation seen = ObserveFeature(features, feature, camera_, levels_, noise_, 1);
+  const double noise_px = 1 / std::sqrt(seen.inv_sigma2_disparity);
+  return std::abs(disparity_px - seen.disparity_px) <=
+         kSurfaceGap_px * levels_.scale(features.level[feature]) + noise_px;
 }
 
 void PlaceVerifier::Refine(const KeyFrameView& view, const PlaceWindow& matched, Matches& matches,
@@ -193,7 +194,8 @@ void PlaceVerifier::Refine(const KeyFrameView& view, const PlaceWindow& matched,
   for (const auto& [feature, id] : matches) {
     const PointSnapshot& point = *matched.FindPoint(id);
     const double weight = std::min(point.static_weight, view.features->static_weight[feature]);
-    PoseObservation observation{ObserveFeature(*view.features, feature, levels_, noise_, weight)};
+    PoseObservation observation{
+        ObserveFeature(*view.features, feature, camera_, levels_, noise_, weight)};
     observation.p_w = point.p_w;
     observations.push_back(observation);
   }

@@ -156,6 +156,7 @@ class TestWorld {
 
   static std::shared_ptr<const Camera> CameraWith(double rolling_shutter_s) {
     Camera camera = *Camera::Preset("simulated");
+    camera.disparity_noise_px = 0.3;
     camera.rolling_shutter_s = rolling_shutter_s;
     return std::make_shared<const Camera>(camera);
   }

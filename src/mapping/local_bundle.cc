@@ -55,7 +55,7 @@ LocalBundle CopyLocalBundle(const MappingOptions& options, const NoiseOptions& n
       const FrameFeatures& features = *map.FindKeyFrame(seen.keyframe)->features;
       const double weight = std::min(point.static_weight, features.static_weight[seen.feature]);
       BundleObservation observation{
-          ObserveFeature(features, seen.feature, map.levels(), noise, weight)};
+          ObserveFeature(features, seen.feature, map.camera(), map.levels(), noise, weight)};
       observation.pose = add_pose(seen.keyframe, true);
       observation.point = static_cast<int>(p);
       bundle.problem.observations.push_back(observation);

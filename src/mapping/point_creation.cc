@@ -53,8 +53,8 @@ std::optional<Eigen::Vector3d> Locate(const MappingOptions& options, const Camer
 }
 
 bool AgreesWith(const Sight& sight, const Eigen::Vector3d& p_w, const Map& map) {
-  const ImageObservation observation =
-      ObserveFeature(sight.features(), sight.feature, map.levels(), NoiseOptions{}, 1);
+  const ImageObservation observation = ObserveFeature(sight.features(), sight.feature, map.camera(),
+                                                      map.levels(), NoiseOptions{}, 1);
   return ReprojectionChi2(map.camera(), sight.keyframe.T_cw * p_w, observation) <
          Chi2Gates().For(observation);
 }

@@ -37,9 +37,10 @@ Projections ProjectUnseen(std::span<const MapPointId> points, const KeyFrame& ke
 
 // Whether the feature lies where the point projects, within the noise of its level.
 bool Agrees(const FrameFeatures& features, int feature, const ProjectionQuery& query,
-            double disparity_px, const ScaleLevels& levels) {
+            double disparity_px, const Map& map) {
   const Chi2Gates gates;
-  const ImageObservation observation = ObserveFeature(features, feature, levels, NoiseOptions{}, 1);
+  const ImageObservation observation =
+      ObserveFeature(features, feature, map.camera(), map.levels(), NoiseOptions{}, 1);
   const double depth_error_px =
       observation.HasDepth() ? disparity_px - observation.disparity_px : 0;
   const double chi2 = observation.inv_sigma2 * (query.uv_px - observation.uv_px).squaredNorm() +
@@ -60,7 +61,7 @@ int FusePoints(std::span<const MapPointId> points, KeyFrameId keyframe_id, doubl
     const MapPointId id = projections.ids[q];
     if (found[q] < 0 || !map.FindPoint(id)) continue;
     if (!Agrees(*keyframe.features, found[q], projections.queries[q], projections.disparity_px[q],
-                map.levels()))
+                map))
       continue;
     const MapPointId present = keyframe.points[found[q]];
     if (!present.valid()) {

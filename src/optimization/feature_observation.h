@@ -6,18 +6,17 @@
 #include "feature/frame_features.h"
 #include "feature/scale_levels.h"
 #include "optimization/reprojection.h"
+#include "sensor/camera.h"
 #include "util/status.h"
 
 namespace msf {
 
 // Measurement noise. A point found at pyramid level l is located to `position_sigma_px` * scale(l).
-// Disparity (bf / depth) carries the noise of the depth sensor, which a structured-light camera has
-// constant in disparity, plus the error of sampling the depth next to the true point, which grows
-// with the patch. What a sensor's calibration leaves (a per cent of depth) counts as noise, too:
-// with the sensor's mere 0.15 px depth would overrule positions that agree.
+// Disparity (bf / depth) carries the noise of the depth sensor, Camera::disparity_noise_px, plus
+// the error of sampling the depth next to the true point, which grows with the patch.
 struct NoiseOptions {
   double position_sigma_px = 1.0;
-  double disparity_sigma_px = 0.3;
+  double disparity_sigma_px = 0;
   double disparity_level_share = 1.0;
   double disparity_knee = 2.5;
 
@@ -25,20 +24,20 @@ struct NoiseOptions {
   void Visit(Visitor& visit) {
     visit("position_sigma_px", position_sigma_px, "noise of a point's position at level 0, px");
     visit("disparity_sigma_px", disparity_sigma_px,
-          "noise of the virtual disparity bf / depth, px");
+          "noise of the virtual disparity bf / depth, px; 0: the camera's own");
     visit("disparity_level_share", disparity_level_share,
           "0: disparity noise equal at all levels; 1: grows like the position's");
     visit("disparity_knee", disparity_knee,
           "disparity errors beyond so many sigmas lose their pull; 0: never");
   }
   Status Check() const {
-    const bool ok = position_sigma_px > 0 && disparity_sigma_px > 0 && disparity_level_share >= 0;
+    const bool ok = position_sigma_px > 0 && disparity_sigma_px >= 0 && disparity_level_share >= 0;
     return ok ? Status::Ok() : Status::Error("noise: sigmas must be positive");
   }
 };
 
 // The observation of feature `i`, weighted by `static_weight`.
-inline ImageObservation ObserveFeature(const FrameFeatures& features, int i,
+inline ImageObservation ObserveFeature(const FrameFeatures& features, int i, const Camera& camera,
                                        const ScaleLevels& levels, const NoiseOptions& noise,
                                        double static_weight) {
   ImageObservation observation;
@@ -47,8 +46,9 @@ inline ImageObservation ObserveFeature(const FrameFeatures& features, int i,
   observation.uv_px = features.uv_px[i].cast<double>();
   observation.inv_sigma2 = 1 / (position_sigma_px * position_sigma_px);
   if (features.HasDepth(i)) {
-    const double sigma_px =
-        noise.disparity_sigma_px * (1 + noise.disparity_level_share * (scale - 1));
+    const double own_sigma_px =
+        noise.disparity_sigma_px > 0 ? noise.disparity_sigma_px : camera.disparity_noise_px;
+    const double sigma_px = own_sigma_px * (1 + noise.disparity_level_share * (scale - 1));
     observation.disparity_px = features.uv_px[i].x() - features.u_right_px[i];
     observation.inv_sigma2_disparity = 1 / (sigma_px * sigma_px);
     if (noise.disparity_knee > 0)

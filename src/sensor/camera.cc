@@ -60,7 +60,7 @@ const std::map<std::string, Camera>& Presets() {
         .p1 = -0.000730,
         .p2 = -0.000144,
         .rolling_shutter_s = kPrimeSenseShutter_s}},
-      {"simulated", {.fx = 525, .fy = 525, .cx = 319.5, .cy = 239.5}},
+      {"simulated", {.fx = 525, .fy = 525, .cx = 319.5, .cy = 239.5, .disparity_noise_px = 0.15}},
   };
   return presets;
 }
@@ -72,12 +72,14 @@ Status Camera::Check() const {
   if (!(fx > 0 && fy > 0)) return Status::Error("camera: fx and fy must be positive");
   if (!(bf > 0)) return Status::Error("camera: bf must be positive");
   if (!(depth_factor > 0)) return Status::Error("camera: depth_factor must be positive");
+  if (!(disparity_noise_px > 0))
+    return Status::Error("camera: disparity_noise_px must be positive");
   if (!(fps > 0)) return Status::Error("camera: fps must be positive");
   if (!(rolling_shutter_s >= 0 && rolling_shutter_s < 1))
     return Status::Error("camera: rolling_shutter_s must be from 0 to below 1 s");
   if (!(std::abs(stamp_lag_s) <= 0.1))
     return Status::Error("camera: stamp_lag_s must be from -0.1 to 0.1 s");
-  for (const double value : {cx, cy, k1, k2, p1, p2, k3}) {
+  for (const double value : {cx, cy, k1, k2, p1, p2, k3, disparity_noise_px}) {
     if (!std::isfinite(value))
       return Status::Error("camera: every parameter must be a finite number");
   }

@@ -18,7 +18,11 @@ struct Camera {
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;  // Brown distortion, OpenCV's order
   double bf = 40;              // focal length times virtual stereo baseline, px m
   double depth_factor = 5000;  // depth image value of one metre
-  double fps = 30;             // nominal frame rate, Hz
+  // How far depth can be trusted: the noise of bf / depth, px, which a structured-light or stereo
+  // camera has equal at all depths. What its calibration leaves (up to a per cent of depth) counts
+  // as noise, too: with a Kinect's mere 0.15 px depth would overrule positions that agree.
+  double disparity_noise_px = 1;
+  double fps = 30;  // nominal frame rate, Hz
   // Rows of the colour image are exposed one after the other: so long after the first row the last
   // one is, s. 0: all at once (global shutter).
   double rolling_shutter_s = 0;
@@ -40,6 +44,8 @@ struct Camera {
     visit("k3", k3, "radial distortion");
     visit("bf", bf, "focal length times virtual stereo baseline, px m");
     visit("depth_factor", depth_factor, "depth image value of one metre");
+    visit("disparity_noise_px", disparity_noise_px,
+          "noise of bf / depth, what the sensor's calibration leaves included, px");
     visit("fps", fps, "nominal frame rate, Hz");
     visit("rolling_shutter_s", rolling_shutter_s,
           "time from the exposure of the first row of the colour image to that of the last, s; 0: "

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace msf {
 namespace {
 
@@ -28,6 +30,14 @@ TEST(Camera, UnprojectInvertsProject) {
 TEST(Camera, UnknownPresetListsTheKnown) {
   EXPECT_NE(Camera::Preset("tum_fr9").message().find("tum_fr1"), std::string::npos);
   EXPECT_FALSE(Camera{}.Check().ok());
+}
+
+TEST(Camera, NoiseOfDepthMustBePositive) {
+  for (const double noise_px : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
+    Camera camera = *Camera::Preset("simulated");
+    camera.disparity_noise_px = noise_px;
+    EXPECT_FALSE(camera.Check().ok()) << noise_px;
+  }
 }
 
 }  // namespace

@@ -179,8 +179,8 @@ bool OptimizeFramePose(const TrackingContext& context, const FrameFeatures& feat
   std::vector<PoseObservation> observations;
   observations.reserve(matches.size());
   for (const PointMatch& match : matches) {
-    PoseObservation observation{
-        ObserveFeature(features, match.feature, context.levels, context.noise, match.weight)};
+    PoseObservation observation{ObserveFeature(features, match.feature, context.camera,
+                                               context.levels, context.noise, match.weight)};
     observation.p_w = match.p_w;
     observations.push_back(observation);
   }
