@@ -7,6 +7,7 @@
 #include "system/worker.h"
 #include "tracking/stamp_lag.h"
 #include "tracking/tracker.h"
+#include "tracking/trajectory_smoothing.h"
 #include "util/data_path.h"
 
 namespace msf {
@@ -254,7 +255,7 @@ Reconstruction System::Impl::Finish() {
 
 Reconstruction System::Impl::Resolve(const Map& map) const {
   Reconstruction result;
-  result.frames = recorder_.Resolve(map);
+  result.frames = SmoothTrajectory(recorder_.Resolve(map), options_.tracking.smoothing_s);
   if (options_.tracking.undo_stamp_lag)
     result.frames = UndoStampLag(result.frames, camera_->stamp_lag_s);
   std::map<MapId, int> frames_per_map;

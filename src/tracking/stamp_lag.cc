@@ -1,16 +1,7 @@
 #include "tracking/stamp_lag.h"
 
-#include <cmath>
-
 namespace msf {
 namespace {
-
-constexpr double kMaxGap_s = 0.5;  // a camera does not keep its velocity for longer
-
-bool AreNeighbours(const ResolvedFrame& a, const ResolvedFrame& b) {
-  const double gap_s = std::abs(a.time_s - b.time_s);
-  return a.T_wc && b.T_wc && a.map_id == b.map_id && gap_s > 0 && gap_s <= kMaxGap_s;
-}
 
 // Where a frame is after `seconds`, if its velocity is that between it and its neighbour.
 Rigid3d MoveOn(const ResolvedFrame& frame, const ResolvedFrame& neighbour, double seconds) {

@@ -15,6 +15,8 @@ Status TrackingOptions::Check() const {
   if (local_search_rounds < 1)
     return Status::Error("tracking.local_search_rounds must be at least 1");
   if (recently_lost_s < 0) return Status::Error("tracking.recently_lost_s must not be negative");
+  if (!(smoothing_s >= 0 && smoothing_s <= 1))
+    return Status::Error("tracking.smoothing_s must be from 0 to 1 s");
   for (const double probability : {min_static_probability, readmit_probability,
                                    readmit_point_probability, landmark_probability}) {
     if (!(probability >= 0 && probability <= 1))

@@ -49,6 +49,7 @@ struct TrackingOptions {
   double local_match_ratio = 0.8;
   bool undo_rolling_shutter = true;
   bool undo_stamp_lag = true;
+  double smoothing_s = 0.035;
   int min_local_inliers = 30;
   int min_local_inliers_relocalized = 50;
   double recently_lost_s = 3;
@@ -95,6 +96,8 @@ struct TrackingOptions {
     visit("undo_stamp_lag", undo_stamp_lag,
           "the trajectory tells where the camera was at the time stamps, not when its images were "
           "exposed (camera.stamp_lag_s)");
+    visit("smoothing_s", smoothing_s,
+          "the trajectory of the whole run is smoothed over about so long, s; 0: as tracked");
     visit("min_local_inliers", min_local_inliers, "inliers with which a frame counts as tracked");
     visit("min_local_inliers_relocalized", min_local_inliers_relocalized,
           "the same within a second of relocalisation");

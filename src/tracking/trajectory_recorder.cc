@@ -1,6 +1,18 @@
 #include "tracking/trajectory_recorder.h"
 
+#include <cmath>
+
 namespace msf {
+namespace {
+
+constexpr double kMaxGap_s = 0.5;  // a camera does not keep its velocity for longer
+
+}  // namespace
+
+bool AreNeighbours(const ResolvedFrame& a, const ResolvedFrame& b) {
+  const double gap_s = std::abs(a.time_s - b.time_s);
+  return a.T_wc && b.T_wc && a.map_id == b.map_id && gap_s > 0 && gap_s <= kMaxGap_s;
+}
 
 void TrajectoryRecorder::Record(const TrackingResult& result) {
   entries_.push_back({result.frame_id, result.time_s, result.state,

@@ -19,6 +19,10 @@ struct ResolvedFrame {
   MapId map_id;
 };
 
+// Whether the motion between two frames that follow each other tells about that within them: both
+// have a pose in the same map, and at most half a second lies between.
+bool AreNeighbours(const ResolvedFrame& a, const ResolvedFrame& b);
+
 class TrajectoryRecorder {
  public:
   void Record(const TrackingResult& result);
