@@ -1,6 +1,7 @@
 #include "apps/run_arguments.h"
 
 #include "apps/command.h"
+#include "sensor/camera.h"
 #include "util/options.h"
 
 namespace msf {
@@ -45,7 +46,8 @@ void DeclareRunArguments(CLI::App& command, RunArguments& arguments) {
       ->check(CLI::PositiveNumber);
   command.add_option("--seed", arguments.seed, "of everything random");
   command.footer("Options (--set section.key=value), with their defaults:\n" +
-                 DescribeOptions<SystemOptions>());
+                 DescribeOptions<SystemOptions>() + "\nKeys of a camera file, with defaults:\n" +
+                 DescribeOptions<Camera>());
 }
 
 SystemOptions ResolveOptions(const RunArguments& arguments) {
