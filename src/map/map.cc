@@ -161,19 +161,6 @@ void Map::CullKeyFrame(KeyFrameId id) {
   culled_[id.value()] = std::move(culled);
 }
 
-void Map::MoveFeatures(KeyFrameId id, std::shared_ptr<const FrameFeatures> features) {
-  KeyFrame& keyframe = MutableKeyFrame(id);
-  MSF_CHECK(features->size() == keyframe.features->size(), "these are other features");
-  keyframe.features = std::move(features);
-  const Rigid3d T_wc = keyframe.T_cw.Inverse();
-  for (int i = 0; i < keyframe.features->size(); ++i) {
-    const MapPoint* point = FindPoint(keyframe.points[i]);
-    if (!point || point->observations.size() > 1 || !keyframe.features->HasDepth(i)) continue;
-    SetPosition(point->id, T_wc * keyframe.features->PointInCamera(i, camera()));
-    UpdateNormalAndRange(point->id);
-  }
-}
-
 void Map::SetWords(KeyFrameId id, std::shared_ptr<const BagOfWords> words) {
   MutableKeyFrame(id).words = std::move(words);
 }

@@ -55,9 +55,6 @@ class Map {
   Rigid3d PoseOf(KeyFrameId id) const;
   // Removes a keyframe from the graph; its pose stays known relative to its parent.
   void CullKeyFrame(KeyFrameId id);
-  // Says anew where a keyframe shows its features, which stay the same; the points that it alone
-  // shows move along.
-  void MoveFeatures(KeyFrameId id, std::shared_ptr<const FrameFeatures> features);
   void SetWords(KeyFrameId id, std::shared_ptr<const BagOfWords> words);
   // Whether any keyframe with this id, culled or not, belongs to a map that still exists.
   bool Knows(KeyFrameId id) const;

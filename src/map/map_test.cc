@@ -354,22 +354,6 @@ TEST_F(MapTest, VersionsCountChangesAndEpochsCorrections) {
   EXPECT_EQ(map_.epoch(), 1u);
 }
 
-TEST_F(MapTest, PointsMoveWithTheFeaturesThatAloneShowThem) {
-  const KeyFrameId first = Add(0.5);
-  const std::vector<MapPointId> points = AddPoints(first, 2);
-  Add(0.6, {points[1]});
-  const Eigen::Vector3d shared_before = map_.FindPoint(points[1])->p_w;
-  auto moved = std::make_shared<FrameFeatures>(*map_.FindKeyFrame(first)->features);
-  for (Eigen::Vector2f& uv_px : moved->uv_px) uv_px.x() += 5;
-  map_.MoveFeatures(first, moved);
-  EXPECT_EQ(map_.FindKeyFrame(first)->features, moved);
-  const Eigen::Vector3d expected =
-      At(0.5).Inverse() * map_.camera().Unproject(moved->uv_px[0].cast<double>(), 2);
-  EXPECT_TRUE(map_.FindPoint(points[0])->p_w.isApprox(expected, 1e-9));
-  EXPECT_EQ(map_.FindPoint(points[1])->p_w, shared_before) << "another keyframe knows its place";
-  ExpectConsistent();
-}
-
 TEST_F(MapTest, ContractsAreChecked) {
   EXPECT_THROW(map_.SetPose(KeyFrameId(0), Rigid3d()), ContractViolation);
   EXPECT_THROW(map_.RemovePoint(MapPointId(0)), ContractViolation);

@@ -66,7 +66,6 @@ TrackingResult Tracker::Track(RgbdFramePtr image, std::shared_ptr<const FrameFea
   bool tracked;
   if (has_map) {
     tracked = Locate(result);
-    if (tracked && UndoRollingShutterOfStart()) tracked = Locate(result);
     if (tracked) InsertKeyFrameIfWanted(load, result);
   } else {
     tracked = StartMap(result);
@@ -159,20 +158,6 @@ void Tracker::UndoRollingShutterAt(const std::optional<Vector6d>& velocity) {
   };
   frame_.features = undo(*extracted_);
   frame_.removed = undo(*extracted_removed_);
-}
-
-// The first frame of a map came without a velocity: the second one knows it.
-bool Tracker::UndoRollingShutterOfStart() {
-  const bool is_rolling = camera_->rolling_shutter_s > 0 && options_.tracking.undo_rolling_shutter;
-  const std::optional<Vector6d> velocity = MeasureVelocity();
-  if (!is_rolling || !last_started_map_ || !velocity) return false;
-  last_.features = std::make_shared<const FrameFeatures>(
-      UndoRollingShutter(*last_.features, *camera_, *velocity));
-  velocity_ = frame_.T_cw * last_.T_cw.Inverse();
-  velocity_interval_s_ = frame_.image->time_s - last_.image->time_s;
-  map_.Write()->MoveFeatures(last_.reference, last_.features);
-  BeginAnew();
-  return true;
 }
 
 std::optional<Vector6d> Tracker::PredictVelocity() const {
@@ -379,7 +364,6 @@ void Tracker::RememberFrame(bool tracked, TrackingResult& result) {
   const bool same_epoch = map_.Read()->epoch() == epoch_;
   const bool follows = tracked && last_frame_tracked_ && !result.started_map && same_epoch;
   last_frame_tracked_ = tracked;
-  last_started_map_ = tracked && result.started_map;
   if (!tracked) return;
   if (follows) {
     velocity_ = frame_.T_cw * last_.T_cw.Inverse();

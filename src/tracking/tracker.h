@@ -61,9 +61,6 @@ class Tracker {
   void BeginAnew();
   // Moves the features to where they would be without a rolling shutter, if the velocity is known.
   void UndoRollingShutterAt(const std::optional<Vector6d>& velocity);
-  // Does so for the first frame of a map once the second one is located; whether there was anything
-  // to do.
-  bool UndoRollingShutterOfStart();
   // Twist per second by the last two poses, and by the present one and the last.
   std::optional<Vector6d> PredictVelocity() const;
   std::optional<Vector6d> MeasureVelocity() const;
@@ -102,7 +99,6 @@ class Tracker {
   LocalMap local_map_;
   uint64_t epoch_ = 0;  // of the map that the frame was located in
   bool last_frame_tracked_ = false;
-  bool last_started_map_ = false;  // the last frame is the first one of a map
   double last_keyframe_time_s_ = 0;
   double last_tracked_time_s_ = 0;
   double relocalized_time_s_ = -1e9;

@@ -130,15 +130,6 @@ TEST(Tracker, ARollingShutterCostsNothingOnceItIsUndone) {
   EXPECT_GT(ErrorWhenShaken(false, 0.023), 3 * undone_m);
 }
 
-// The first image is exposed without a velocity to undo its rolling shutter by.
-TEST(Tracker, AMapThatStartsInMotionIsNotBent) {
-  constexpr double kTurn_rad_per_s = 0.4;
-  Trip trip({}, 0.023);
-  trip.Jump(0, kTurn_rad_per_s);
-  trip.Go(kTurn_rad_per_s);
-  for (int i = 0; i < 3; ++i) EXPECT_LT(trip.Error(trip.Go(0)), 0.005) << i;
-}
-
 TEST(Tracker, RemovedFeaturesComeBackWhereTheMapKnowsBetter) {
   Trip trip({});
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(trip.Go(0.1).readmitted.empty());
