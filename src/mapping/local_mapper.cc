@@ -105,7 +105,7 @@ void LocalMapper::CreatePoints(KeyFrameId id, const std::function<bool()>& hurry
   for (const KeyFrameId neighbour : neighbours) {
     if (summary.created_points > 0 && hurry()) return;
     const std::vector<NewPoint> points =
-        TriangulateWithNeighbour(options_, *map_.Read(), id, neighbour);
+        TriangulateWithNeighbour(options_, noise_, *map_.Read(), id, neighbour);
     const SharedMap::Writer map = map_.Write();
     for (const MapPointId point : AddNewPoints(points, id, neighbour, *map)) {
       recent_points_.Add(point);
@@ -126,7 +126,8 @@ int LocalMapper::FuseWithNeighbours(KeyFrameId id) {
   for (const KeyFrameId target : targets) {
     const SharedMap::Writer map = map_.Write();
     if (!map->FindKeyFrame(id) || !map->FindKeyFrame(target)) continue;
-    fused += FusePoints(ValidPoints(*map->FindKeyFrame(id)), target, options_.fuse_radius_px, *map);
+    fused += FusePoints(noise_, ValidPoints(*map->FindKeyFrame(id)), target,
+                        options_.fuse_radius_px, *map);
     const std::vector<MapPointId> points = ValidPoints(*map->FindKeyFrame(target));
     theirs.insert(theirs.end(), points.begin(), points.end());
   }
@@ -134,7 +135,7 @@ int LocalMapper::FuseWithNeighbours(KeyFrameId id) {
   theirs.erase(std::unique(theirs.begin(), theirs.end()), theirs.end());
   const SharedMap::Writer map = map_.Write();
   if (!map->FindKeyFrame(id)) return fused;
-  fused += FusePoints(theirs, id, options_.fuse_radius_px, *map);
+  fused += FusePoints(noise_, theirs, id, options_.fuse_radius_px, *map);
   for (const MapPointId point : ValidPoints(*map->FindKeyFrame(id))) {
     map->UpdateAppearance(point);
     map->UpdateNormalAndRange(point);

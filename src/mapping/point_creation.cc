@@ -52,9 +52,10 @@ std::optional<Eigen::Vector3d> Locate(const MappingOptions& options, const Camer
   return stereo_a < stereo_b ? a.PointInWorld(camera) : b.PointInWorld(camera);
 }
 
-bool AgreesWith(const Sight& sight, const Eigen::Vector3d& p_w, const Map& map) {
-  const ImageObservation observation = ObserveFeature(sight.features(), sight.feature, map.camera(),
-                                                      map.levels(), NoiseOptions{}, 1);
+bool AgreesWith(const Sight& sight, const Eigen::Vector3d& p_w, const Map& map,
+                const NoiseOptions& noise) {
+  const ImageObservation observation =
+      ObserveFeature(sight.features(), sight.feature, map.camera(), map.levels(), noise, 1);
   return ReprojectionChi2(map.camera(), sight.keyframe.T_cw * p_w, observation) <
          Chi2Gates().For(observation);
 }
@@ -74,7 +75,8 @@ bool ScalesAgree(const Sight& a, const Sight& b, const Eigen::Vector3d& p_w,
 
 }  // namespace
 
-std::vector<NewPoint> TriangulateWithNeighbour(const MappingOptions& options, const Map& map,
+std::vector<NewPoint> TriangulateWithNeighbour(const MappingOptions& options,
+                                               const NoiseOptions& noise, const Map& map,
                                                KeyFrameId id, KeyFrameId neighbour_id) {
   const KeyFrame* keyframe = map.FindKeyFrame(id);
   const KeyFrame* neighbour = map.FindKeyFrame(neighbour_id);
@@ -94,7 +96,7 @@ std::vector<NewPoint> TriangulateWithNeighbour(const MappingOptions& options, co
   for (const auto& [i, j] : pairs) {
     const Sight a{*keyframe, i}, b{*neighbour, j};
     const std::optional<Eigen::Vector3d> p_w = Locate(options, camera, a, b);
-    if (!p_w || !AgreesWith(a, *p_w, map) || !AgreesWith(b, *p_w, map)) continue;
+    if (!p_w || !AgreesWith(a, *p_w, map, noise) || !AgreesWith(b, *p_w, map, noise)) continue;
     if (ScalesAgree(a, b, *p_w, map.levels())) points.push_back({*p_w, i, j});
   }
   return points;

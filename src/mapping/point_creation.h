@@ -5,6 +5,7 @@
 
 #include "map/map.h"
 #include "mapping/mapping_options.h"
+#include "optimization/feature_observation.h"
 
 namespace msf {
 
@@ -18,7 +19,8 @@ struct NewPoint {
 // wider of the two parallaxes, between the keyframes (triangulation) or of one keyframe's depth,
 // and must agree with both images and with the change of scale. Empty when the two are too close
 // together.
-std::vector<NewPoint> TriangulateWithNeighbour(const MappingOptions& options, const Map& map,
+std::vector<NewPoint> TriangulateWithNeighbour(const MappingOptions& options,
+                                               const NoiseOptions& noise, const Map& map,
                                                KeyFrameId id, KeyFrameId neighbour);
 
 // Puts them into the map unless a feature was taken meanwhile.

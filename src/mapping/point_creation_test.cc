@@ -24,7 +24,8 @@ class PointCreationTest : public ::testing::Test {
 
 TEST_F(PointCreationTest, PointsLieWhereTheLandmarksAre) {
   const KeyFrameId a = Add(0), b = Add(0.1);
-  const std::vector<NewPoint> points = TriangulateWithNeighbour(options_, map_, b, a);
+  const std::vector<NewPoint> points =
+      TriangulateWithNeighbour(options_, NoiseOptions{}, map_, b, a);
   ASSERT_GT(points.size(), 100u);
   std::vector<double> errors_m;
   for (const NewPoint& point : points) {
@@ -38,20 +39,22 @@ TEST_F(PointCreationTest, PointsLieWhereTheLandmarksAre) {
 
 TEST_F(PointCreationTest, KeyFramesAtTheSamePlaceMakeNone) {
   const KeyFrameId a = Add(0), b = Add(0.001);
-  EXPECT_TRUE(TriangulateWithNeighbour(options_, map_, b, a).empty());
+  EXPECT_TRUE(TriangulateWithNeighbour(options_, NoiseOptions{}, map_, b, a).empty());
 }
 
 TEST_F(PointCreationTest, KeyFramesThatAreGoneMakeNone) {
   const KeyFrameId a = Add(0), b = Add(0.1);
-  const std::vector<NewPoint> points = TriangulateWithNeighbour(options_, map_, b, a);
+  const std::vector<NewPoint> points =
+      TriangulateWithNeighbour(options_, NoiseOptions{}, map_, b, a);
   map_.DropMap(map_.active_map());
-  EXPECT_TRUE(TriangulateWithNeighbour(options_, map_, b, a).empty());
+  EXPECT_TRUE(TriangulateWithNeighbour(options_, NoiseOptions{}, map_, b, a).empty());
   EXPECT_TRUE(AddNewPoints(points, b, a, map_).empty());
 }
 
 TEST_F(PointCreationTest, AFeatureGetsOnePointOnly) {
   const KeyFrameId a = Add(0), b = Add(0.1);
-  const std::vector<NewPoint> points = TriangulateWithNeighbour(options_, map_, b, a);
+  const std::vector<NewPoint> points =
+      TriangulateWithNeighbour(options_, NoiseOptions{}, map_, b, a);
   map_.AddPoint({0, 0, 5}, b, points[0].feature);  // taken while the others were computed
   const std::vector<MapPointId> added = AddNewPoints(points, b, a, map_);
   EXPECT_EQ(added.size(), points.size() - 1);
@@ -60,7 +63,7 @@ TEST_F(PointCreationTest, AFeatureGetsOnePointOnly) {
   EXPECT_EQ(first.FeatureIn(a), points[1].neighbour_feature);
   EXPECT_GT(first.max_distance_m, first.min_distance_m);
   EXPECT_TRUE(AddNewPoints(points, b, a, map_).empty());
-  for (const NewPoint& again : TriangulateWithNeighbour(options_, map_, b, a))
+  for (const NewPoint& again : TriangulateWithNeighbour(options_, NoiseOptions{}, map_, b, a))
     EXPECT_FALSE(map_.FindKeyFrame(b)->points[again.feature].valid());
 }
 

@@ -37,10 +37,10 @@ Projections ProjectUnseen(std::span<const MapPointId> points, const KeyFrame& ke
 
 // Whether the feature lies where the point projects, within the noise of its level.
 bool Agrees(const FrameFeatures& features, int feature, const ProjectionQuery& query,
-            double disparity_px, const Map& map) {
+            double disparity_px, const Map& map, const NoiseOptions& noise) {
   const Chi2Gates gates;
   const ImageObservation observation =
-      ObserveFeature(features, feature, map.camera(), map.levels(), NoiseOptions{}, 1);
+      ObserveFeature(features, feature, map.camera(), map.levels(), noise, 1);
   const double depth_error_px =
       observation.HasDepth() ? disparity_px - observation.disparity_px : 0;
   const double chi2 = observation.inv_sigma2 * (query.uv_px - observation.uv_px).squaredNorm() +
@@ -50,8 +50,8 @@ bool Agrees(const FrameFeatures& features, int feature, const ProjectionQuery& q
 
 }  // namespace
 
-int FusePoints(std::span<const MapPointId> points, KeyFrameId keyframe_id, double radius_px,
-               Map& map) {
+int FusePoints(const NoiseOptions& noise, std::span<const MapPointId> points,
+               KeyFrameId keyframe_id, double radius_px, Map& map) {
   const KeyFrame& keyframe = *map.FindKeyFrame(keyframe_id);
   const Projections projections = ProjectUnseen(points, keyframe, radius_px, map);
   const std::vector<int> found = MatchByProjection(*keyframe.features, projections.queries,
@@ -61,7 +61,7 @@ int FusePoints(std::span<const MapPointId> points, KeyFrameId keyframe_id, doubl
     const MapPointId id = projections.ids[q];
     if (found[q] < 0 || !map.FindPoint(id)) continue;
     if (!Agrees(*keyframe.features, found[q], projections.queries[q], projections.disparity_px[q],
-                map))
+                map, noise))
       continue;
     const MapPointId present = keyframe.points[found[q]];
     if (!present.valid()) {

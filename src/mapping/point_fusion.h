@@ -4,6 +4,7 @@
 #include <span>
 
 #include "map/map.h"
+#include "optimization/feature_observation.h"
 
 namespace msf {
 
@@ -11,6 +12,7 @@ namespace msf {
 // point and the projected one become one (the better observed stays); a feature without a point is
 // connected. Points the keyframe sees already are left out. Returns how many were fused or
 // connected.
-int FusePoints(std::span<const MapPointId> points, KeyFrameId keyframe, double radius_px, Map& map);
+int FusePoints(const NoiseOptions& noise, std::span<const MapPointId> points, KeyFrameId keyframe,
+               double radius_px, Map& map);
 
 }  // namespace msf

@@ -34,7 +34,7 @@ class PointFusionTest : public ::testing::Test {
 
 TEST_F(PointFusionTest, PointsAreConnectedWithTheFeaturesThatShowThem) {
   const KeyFrameId second = AddBare();
-  const int fused = FusePoints(points_, second, kRadius_px, map_);
+  const int fused = FusePoints(NoiseOptions{}, points_, second, kRadius_px, map_);
   EXPECT_GT(fused, 100);
   int connected = 0;
   for (const MapPointId id : points_) {
@@ -43,7 +43,8 @@ TEST_F(PointFusionTest, PointsAreConnectedWithTheFeaturesThatShowThem) {
     EXPECT_EQ(LandmarkOf(id, first_), LandmarkOf(id, second));
   }
   EXPECT_EQ(connected, fused);
-  EXPECT_EQ(FusePoints(points_, second, kRadius_px, map_), 0) << "they are seen already";
+  EXPECT_EQ(FusePoints(NoiseOptions{}, points_, second, kRadius_px, map_), 0)
+      << "they are seen already";
 }
 
 TEST_F(PointFusionTest, OfTwoPointsTheBetterObservedStays) {
@@ -55,9 +56,10 @@ TEST_F(PointFusionTest, OfTwoPointsTheBetterObservedStays) {
   for (int i = 0; i < features.size(); ++i) {
     theirs.push_back(map_.AddPoint(T_wc * features.PointInCamera(i, map_.camera()), second, i));
   }
-  FusePoints(points_, third, kRadius_px, map_);  // the first keyframe's points have two observers
+  FusePoints(NoiseOptions{}, points_, third, kRadius_px,
+             map_);  // the first keyframe's points have two observers
   const int before = map_.NumPoints(map_.active_map());
-  const int fused = FusePoints(points_, second, kRadius_px, map_);
+  const int fused = FusePoints(NoiseOptions{}, points_, second, kRadius_px, map_);
   EXPECT_GT(fused, 100);
   EXPECT_EQ(map_.NumPoints(map_.active_map()), before - fused);
   int replaced = 0;
@@ -72,7 +74,7 @@ TEST_F(PointFusionTest, OfTwoPointsTheBetterObservedStays) {
 }
 
 TEST_F(PointFusionTest, NothingFitsAKeyFrameAtTheWrongPlace) {
-  EXPECT_LT(FusePoints(points_, AddBare(0.3), kRadius_px, map_), 3);
+  EXPECT_LT(FusePoints(NoiseOptions{}, points_, AddBare(0.3), kRadius_px, map_), 3);
 }
 
 }  // namespace

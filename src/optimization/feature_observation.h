@@ -31,8 +31,11 @@ struct NoiseOptions {
           "disparity errors beyond so many sigmas lose their pull; 0: never");
   }
   Status Check() const {
-    const bool ok = position_sigma_px > 0 && disparity_sigma_px >= 0 && disparity_level_share >= 0;
-    return ok ? Status::Ok() : Status::Error("noise: sigmas must be positive");
+    const bool ok = position_sigma_px > 0 && disparity_sigma_px >= 0 &&
+                    disparity_level_share >= 0 && disparity_knee >= 0;
+    return ok ? Status::Ok()
+              : Status::Error(
+                    "noise: position_sigma_px must be positive, the other options not negative");
   }
 };
 

@@ -60,6 +60,7 @@ const std::map<std::string, Camera>& Presets() {
         .p1 = -0.000730,
         .p2 = -0.000144,
         .rolling_shutter_s = kPrimeSenseShutter_s}},
+      // Depth of 0.07 px of noise and no error of calibration; what is sampled at edges has more.
       {"simulated", {.fx = 525, .fy = 525, .cx = 319.5, .cy = 239.5, .disparity_noise_px = 0.15}},
   };
   return presets;
