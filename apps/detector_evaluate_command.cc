@@ -88,7 +88,11 @@ std::vector<PersonRow> RunVariations(DetectorEvaluation& evaluation, double fals
                                                         false_per_image)});
   };
   for (const int degrees : {0, 15, 30, 45, 90}) {
-    add(fmt::format("rotated {} deg", degrees), evaluation.RunRotated(degrees));
+    add(fmt::format("rotated {} deg", degrees), evaluation.RunRotated(degrees, kTurnedCorners));
+  }
+  // The same pictures. After a quarter turn both boxes are the same.
+  for (const int degrees : {15, 30, 45}) {
+    add(fmt::format("outline {} deg", degrees), evaluation.RunRotated(degrees, kTurnedOutline));
   }
   for (const int percent : {0, 30, 50}) {
     add(fmt::format("cut {} %", percent), evaluation.RunCut(kPerson, percent / 100.0));
@@ -118,7 +122,7 @@ void Evaluate(EvaluateArguments& arguments) {
   options.every_class = true;
   const std::unique_ptr<Detector> detector = arguments.detector.Make();
   std::cerr << detector->description() << "\n";
-  const int variations = arguments.robustness ? 9 : 1;
+  const int variations = arguments.robustness ? 12 : 1;
   Progress progress("evaluate", "images", static_cast<int>(images.size()) * variations);
   DetectorEvaluation evaluation = Require(DetectorEvaluation::Make(
       *detector, std::move(images), [&](int done) { progress.Update(done); }));

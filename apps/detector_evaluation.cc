@@ -72,8 +72,10 @@ StatusOr<std::vector<ScoredImage>> DetectorEvaluation::RunUpright() {
   return Run([](LabeledPicture picture, size_t) { return picture; });
 }
 
-StatusOr<std::vector<ScoredImage>> DetectorEvaluation::RunRotated(double degrees) {
-  return Run([degrees](const LabeledPicture& picture, size_t) { return Rotate(picture, degrees); });
+StatusOr<std::vector<ScoredImage>> DetectorEvaluation::RunRotated(double degrees, double q) {
+  return Run([degrees, q](const LabeledPicture& picture, size_t) {
+    return Rotate(picture, degrees, q);
+  });
 }
 
 StatusOr<std::vector<ScoredImage>> DetectorEvaluation::RunCut(int class_id, double fraction) {

@@ -26,8 +26,8 @@ class DetectorEvaluation {
 
   // The images as they are; the results carry VOC class ids.
   StatusOr<std::vector<ScoredImage>> RunUpright();
-  // Turned pictures.
-  StatusOr<std::vector<ScoredImage>> RunRotated(double degrees);
+  // Turned pictures, with the boxes of TurnBox(q).
+  StatusOr<std::vector<ScoredImage>> RunRotated(double degrees, double q);
   // In every image with objects of `class_id` the largest of them is cut by a side of the picture,
   // each side in turn.
   StatusOr<std::vector<ScoredImage>> RunCut(int class_id, double fraction);

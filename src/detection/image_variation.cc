@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "detection/turned_box.h"
 #include "util/check.h"
 
 namespace msf {
@@ -14,23 +15,9 @@ ImageBox CutBy(const ImageBox& box, float width, float height) {
           std::clamp(box.x1, 0.0f, width), std::clamp(box.y1, 0.0f, height)};
 }
 
-ImageBox HullOfCorners(const ImageBox& box, const cv::Matx23d& map) {
-  ImageBox hull{1e9f, 1e9f, -1e9f, -1e9f};
-  for (const float x : {box.x0, box.x1}) {
-    for (const float y : {box.y0, box.y1}) {
-      const cv::Vec2d p = map * cv::Vec3d(x, y, 1);
-      hull.x0 = std::min(hull.x0, static_cast<float>(p[0]));
-      hull.y0 = std::min(hull.y0, static_cast<float>(p[1]));
-      hull.x1 = std::max(hull.x1, static_cast<float>(p[0]));
-      hull.y1 = std::max(hull.y1, static_cast<float>(p[1]));
-    }
-  }
-  return hull;
-}
-
 }  // namespace
 
-LabeledPicture Rotate(const LabeledPicture& picture, double degrees) {
+LabeledPicture Rotate(const LabeledPicture& picture, double degrees, double q) {
   const int side = std::max(picture.pixels.cols, picture.pixels.rows);
   const double half = side / 2.0;
   const double angle = degrees * CV_PI / 180, c = std::cos(angle), s = std::sin(angle);
@@ -44,7 +31,7 @@ LabeledPicture Rotate(const LabeledPicture& picture, double degrees) {
   cv::warpAffine(picture.pixels, turned.pixels, of_centres, {side, side}, cv::INTER_LINEAR,
                  cv::BORDER_CONSTANT, cv::Scalar::all(114));
   for (LabeledBox object : picture.objects) {
-    const ImageBox hull = HullOfCorners(object.box, map);
+    const ImageBox hull = TurnBox(object.box, map, q);
     object.box = CutBy(hull, static_cast<float>(side), static_cast<float>(side));
     object.ignored = object.ignored || object.box.area() < 0.5f * hull.area();
     if (object.box.area() > 0) turned.objects.push_back(object);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "detection/detection_metrics.h"
+#include "detection/turned_box.h"
 
 namespace msf {
 
@@ -14,10 +15,9 @@ struct LabeledPicture {
 };
 
 // The picture in the middle of a grey square with its longer side, turned by `degrees` around the
-// centre: a camera that rolls keeps the scale, and corners leave the square. A box becomes the
-// upright hull of its turned corners, cut by the square; objects of which less than half stays
-// inside are ignored.
-LabeledPicture Rotate(const LabeledPicture& picture, double degrees);
+// centre: a camera that rolls keeps the scale, and corners leave the square. Boxes become those of
+// TurnBox(q), cut by the square; objects of which less than half stays inside are ignored.
+LabeledPicture Rotate(const LabeledPicture& picture, double degrees, double q = kTurnedCorners);
 
 enum class ImageSide { kLeft, kTop, kRight, kBottom };
 

@@ -169,7 +169,14 @@ std::optional<Vector6d> Tracker::MeasureVelocity() const {
   // A pose found anew may be in another map, or far from where the last one was taken to be.
   const bool is_relocalized = relocalized_time_s_ == frame_.image->time_s;
   if (!last_frame_tracked_ || is_relocalized) return std::nullopt;
-  return VelocityOf(frame_.T_cw * last_.T_cw.Inverse(), frame_.image->time_s - last_.image->time_s);
+  const double interval_s = frame_.image->time_s - last_.image->time_s;
+  const Vector6d mean = VelocityOf(frame_.T_cw * last_.T_cw.Inverse(), interval_s);
+  const std::optional<Vector6d> mean_before = PredictVelocity();
+  if (!mean_before) return mean;
+  // The mean since the last frame was true half an interval ago, the one before it another half
+  // earlier.
+  const double going_on = interval_s / (interval_s + velocity_interval_s_);
+  return mean + options_.tracking.velocity_trend * going_on * (mean - *mean_before);
 }
 
 bool Tracker::FindPose(TrackingResult& result) {

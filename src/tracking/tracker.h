@@ -61,7 +61,7 @@ class Tracker {
   void BeginAnew();
   // Moves the features to where they would be without a rolling shutter, if the velocity is known.
   void UndoRollingShutterAt(const std::optional<Vector6d>& velocity);
-  // Twist per second by the last two poses, and by the present one and the last.
+  // Twist per second by the last two poses, and at the present one by these three.
   std::optional<Vector6d> PredictVelocity() const;
   std::optional<Vector6d> MeasureVelocity() const;
   // What this frame says about the points of the map: `expected` ones should be visible.

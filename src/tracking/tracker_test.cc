@@ -108,9 +108,11 @@ class Trip {
 bool InLeftThird(const Eigen::Vector2f& px) { return px.x() < 213; }
 
 // Of a camera that turns to and fro, on average, m.
-double ErrorWhenShaken(bool undo_rolling_shutter, double rolling_shutter_s) {
+double ErrorWhenShaken(bool undo_rolling_shutter, double rolling_shutter_s,
+                       double velocity_trend = TrackingOptions().velocity_trend) {
   TrackingOptions options;
   options.undo_rolling_shutter = undo_rolling_shutter;
+  options.velocity_trend = velocity_trend;
   Trip trip(options, rolling_shutter_s);
   constexpr int kFrames = 60;
   double sum_m = 0;
@@ -128,6 +130,11 @@ TEST(Tracker, ARollingShutterCostsNothingOnceItIsUndone) {
   const double undone_m = ErrorWhenShaken(true, 0.023);
   EXPECT_LT(undone_m, 0.003);
   EXPECT_GT(ErrorWhenShaken(false, 0.023), 3 * undone_m);
+}
+
+TEST(Tracker, TheTrendOfTheVelocityGoesOnUntilTheExposure) {
+  const double mean_m = ErrorWhenShaken(true, 0.023, 0), half_m = ErrorWhenShaken(true, 0.023, 0.5);
+  EXPECT_LT(half_m, mean_m);
 }
 
 TEST(Tracker, RemovedFeaturesComeBackWhereTheMapKnowsBetter) {

@@ -17,6 +17,8 @@ Status TrackingOptions::Check() const {
   if (recently_lost_s < 0) return Status::Error("tracking.recently_lost_s must not be negative");
   if (!(smoothing_s >= 0 && smoothing_s <= 1))
     return Status::Error("tracking.smoothing_s must be from 0 to 1 s");
+  if (!(velocity_trend >= 0 && velocity_trend <= 1))
+    return Status::Error("tracking.velocity_trend must be from 0 to 1");
   for (const double probability : {min_static_probability, readmit_probability,
                                    readmit_point_probability, landmark_probability}) {
     if (!(probability >= 0 && probability <= 1))

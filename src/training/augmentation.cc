@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "detection/turned_box.h"
 #include "training/photometric.h"
 
 namespace msf {
@@ -49,7 +50,7 @@ LabeledImage MakeMosaic(const std::vector<LabeledImage>& images, size_t index, i
     cv::warpAffine(image.pixels, mosaic.pixels, map, mosaic.pixels.size(), cv::INTER_LINEAR,
                    cv::BORDER_TRANSPARENT);
     for (const VocObject& object :
-         TransformObjects(image.objects, map, mosaic.pixels.size(), 0.1)) {
+         TransformObjects(image.objects, map, mosaic.pixels.size(), 0.1, kTurnedCorners)) {
       mosaic.objects.push_back(object);
     }
   }
@@ -90,7 +91,7 @@ cv::Matx33d DrawMap(const LabeledImage& source, bool is_mosaic, int side,
                     Translation(-0.5 * source.pixels.cols, -0.5 * source.pixels.rows);
   if (Uniform(random, 0.0, 1.0) < options.border_crop) {
     const std::vector<VocObject> placed =
-        TransformObjects(source.objects, TopRows(map), {side, side}, 0.5);
+        TransformObjects(source.objects, TopRows(map), {side, side}, 0.5, options.turned_outline);
     if (!placed.empty()) {
       const cv::Point2d shift = BorderCropShift(placed, side, random);
       map = Translation(shift.x, shift.y) * map;
@@ -109,25 +110,18 @@ Status AugmentationOptions::Check() const {
     if (!(share >= 0.0 && share <= 1.0))
       return Status::Error("shares of the augmentation must lie in [0, 1]");
   }
+  if (!(turned_outline >= 1.0 && turned_outline <= 2.0))
+    return Status::Error("augmentation.turned_outline must lie in [1, 2]");
   if (!(scale >= 0.0 && scale < 1.0)) return Status::Error("augmentation.scale must lie in [0, 1)");
   return Status::Ok();
 }
 
 std::vector<VocObject> TransformObjects(const std::vector<VocObject>& objects,
-                                        const cv::Matx23d& map, cv::Size size, double min_visible) {
+                                        const cv::Matx23d& map, cv::Size size, double min_visible,
+                                        double q) {
   std::vector<VocObject> kept;
   for (const VocObject& object : objects) {
-    float x0 = 1e9F, y0 = 1e9F, x1 = -1e9F, y1 = -1e9F;
-    for (const cv::Vec2f& corner :
-         {cv::Vec2f(object.x0, object.y0), cv::Vec2f(object.x1, object.y0),
-          cv::Vec2f(object.x0, object.y1), cv::Vec2f(object.x1, object.y1)}) {
-      const auto x = static_cast<float>(map(0, 0) * corner[0] + map(0, 1) * corner[1] + map(0, 2));
-      const auto y = static_cast<float>(map(1, 0) * corner[0] + map(1, 1) * corner[1] + map(1, 2));
-      x0 = std::min(x0, x);
-      y0 = std::min(y0, y);
-      x1 = std::max(x1, x);
-      y1 = std::max(y1, y);
-    }
+    const auto [x0, y0, x1, y1] = TurnBox({object.x0, object.y0, object.x1, object.y1}, map, q);
     VocObject cut = object;
     cut.x0 = std::clamp(x0, 0.0F, static_cast<float>(size.width));
     cut.y0 = std::clamp(y0, 0.0F, static_cast<float>(size.height));
@@ -148,7 +142,8 @@ LabeledImage MakeTrainingPicture(const std::vector<LabeledImage>& images, size_t
   LabeledImage picture;
   cv::warpAffine(source.pixels, picture.pixels, map, {side, side}, cv::INTER_LINEAR,
                  cv::BORDER_CONSTANT, kGrey);
-  picture.objects = TransformObjects(source.objects, map, {side, side}, options.min_visible);
+  picture.objects = TransformObjects(source.objects, map, {side, side}, options.min_visible,
+                                     options.turned_outline);
   picture.angle = AngleOf(map);
   ChangeColours(picture.pixels, options.hue, options.saturation, options.value, random);
   if (Uniform(random, 0.0, 1.0) < options.blur) Blur(picture.pixels, random);

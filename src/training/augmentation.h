@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "detection/turned_box.h"
 #include "io/voc_dataset.h"
 #include "util/status.h"
 
@@ -24,6 +25,7 @@ struct AugmentationOptions {
   double rotate_upright = 0.6;
   double rotate_quarter = 0.15;
   double rotate_degrees = 45.0;
+  double turned_outline = 1.5;
   double scale = 0.35;
   double translate = 0.1;
   double border_crop = 0.2;
@@ -42,6 +44,9 @@ struct AugmentationOptions {
           "share of pictures rotated by about a quarter turn to either side");
     visit("rotate_degrees", rotate_degrees,
           "largest rotation of the other pictures, degrees to either side");
+    visit("turned_outline", turned_outline,
+          "boxes of turned objects: 1 around the turned corners of their boxes, 2 around the ellipses "
+          "in these");
     visit("scale", scale, "pictures are scaled by 1 - scale to 1 + scale");
     visit("translate", translate, "largest shift as a part of the picture's side");
     visit("border_crop", border_crop,
@@ -64,10 +69,11 @@ using Random = std::mt19937_64;
 LabeledImage MakeTrainingPicture(const std::vector<LabeledImage>& images, size_t index, int side,
                                  const AugmentationOptions& options, Random& random);
 
-// `objects` under the affine map (2x3, old pixels to new ones): the box around the mapped corners,
+// `objects` under the affine map (2x3, old pixels to new ones): their boxes as TurnBox(q) draws them,
 // cut to `size`. Objects that keep less than `min_visible` of the mapped box, or less than 2 pixels
 // of a side, are dropped.
 std::vector<VocObject> TransformObjects(const std::vector<VocObject>& objects,
-                                        const cv::Matx23d& map, cv::Size size, double min_visible);
+                                        const cv::Matx23d& map, cv::Size size, double min_visible,
+                                        double q = kTurnedCorners);
 
 }  // namespace msf

@@ -12,7 +12,6 @@ namespace msf {
 
 namespace {
 
-constexpr double kNormEpsilon = 1e-3;
 constexpr double kShift = 4.0;         // where SiLU is nearly linear
 constexpr double kResidualPart = 6.0;  // branches speak this many times as loud as the residual
 constexpr int64_t kSamples = 20000;

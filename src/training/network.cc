@@ -12,7 +12,6 @@ namespace msf {
 
 namespace {
 
-constexpr double kNormEpsilon = 1e-3;
 constexpr double kNormMomentum = 0.03;
 
 }  // namespace

@@ -66,12 +66,15 @@ class Network {
   bool training_ = false;
 };
 
+inline constexpr double kNormEpsilon = 1e-3;  // of batch norms
+
 // Prefixes of a convolution's weight and of its batch norm: "model.0.conv", "model.0.bn"; a bare
 // convolution is just its name.
 std::string ConvPrefix(const GraphNode& node);
 std::string NormPrefix(const GraphNode& node);
 
-// Reads a dict of tensors written by torch.save or by SaveTensors, as float.
+// Reads a dict of tensors written by torch.save or by SaveTensors, as float; of a file whose name ends
+// in .onnx see ReadOnnxWeights.
 StatusOr<NamedTensors> LoadTensors(const std::filesystem::path& file);
 Status SaveTensors(const std::filesystem::path& file, const NamedTensors& tensors);
 

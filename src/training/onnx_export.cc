@@ -10,7 +10,6 @@ namespace msf {
 
 namespace {
 
-constexpr float kNormEpsilon = 1e-3F;
 constexpr int64_t kOpset = 13;
 constexpr int64_t kIrVersion = 7;
 
@@ -118,7 +117,7 @@ class GraphExporter {
     for (const char* part : {".weight", ".bias", ".running_mean", ".running_var"}) {
       inputs.push_back(onnx_.Constant(node.name + part, Tensor(node.name + part)));
     }
-    OnnxGraph::Set(onnx_.Node("BatchNormalization", inputs, output), "epsilon", kNormEpsilon);
+    OnnxGraph::Set(onnx_.Node("BatchNormalization", inputs, output), "epsilon", static_cast<float>(kNormEpsilon));
   }
 
   void ExportPool(const GraphNode& node, const std::string& input, const std::string& output) {

@@ -8,6 +8,7 @@
 #include "detection/onnx_reader.h"
 #include "training/head_decoding.h"
 #include "training/model_config.h"
+#include "training/onnx_import.h"
 
 namespace msf {
 namespace {
@@ -79,6 +80,27 @@ TEST_P(OnnxExportTest, OneDnnAgreesWithLibtorch) {
         << output.name;
   }
   EXPECT_EQ(compiled->outputs().size(), 6U);
+}
+
+TEST_P(OnnxExportTest, WeightsComeBack) {
+  const Network network = MakeNetwork(GetParam());
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / (std::string(GetParam()) + "_back.onnx");
+  OnnxOptions options;
+  options.half = false;
+  ASSERT_TRUE(ExportOnnx(network.graph(), network.State(), options, file).ok());
+  const StatusOr<NamedTensors> weights = LoadTensors(file);
+  ASSERT_TRUE(weights.ok()) << weights.message();
+  Network again(network.graph(), 1);
+  const Status loaded = again.Load(*weights);
+  ASSERT_TRUE(loaded.ok()) << loaded.message();
+  const torch::NoGradGuard no_grad;
+  const torch::Tensor image = torch::rand({1, 3, kHeight, kWidth});
+  const HeadOutputs a = network.Forward(image), b = again.Forward(image);
+  for (size_t i = 0; i < a.boxes.size(); ++i) {
+    EXPECT_LT(RelativeError(b.boxes[i], a.boxes[i]), 1e-4);
+    EXPECT_LT(RelativeError(b.classes[i], a.classes[i]), 1e-4);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, OnnxExportTest,

@@ -4,11 +4,13 @@
 #include <sstream>
 
 #include "training/network.h"
+#include "training/onnx_import.h"
 #include "util/atomic_file.h"
 
 namespace msf {
 
 StatusOr<NamedTensors> LoadTensors(const std::filesystem::path& file) {
+  if (file.extension() == ".onnx") return ReadOnnxWeights(file);
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return Status::Error(file.string() + ": cannot be opened; give a file of weights");
   const std::vector<char> bytes((std::istreambuf_iterator<char>(stream)),
