@@ -174,8 +174,11 @@ void AddDetectorEvaluateCommand(CLI::App& detector) {
       ->add_option("--false-per-image", arguments->false_per_image,
                    "false person boxes per image for the person recall")
       ->capture_default_str();
-  command->add_flag("--robustness", arguments->robustness,
-                    "person recall also in turned images and with people cut off by the border");
+  command->add_flag(
+      "--robustness", arguments->robustness,
+      "person recall also in turned images (rotated: objects labelled by the boxes around "
+      "their turned corners; outline: by those around turned ellipses, which fit people "
+      "far better) and with people cut off by the border");
   command->add_option("--limit", arguments->limit, "use the first images only");
   command->add_option("--json", arguments->json_file, "file for the figures");
   command->add_option("--plots", arguments->plot_folder,

@@ -73,9 +73,8 @@ StatusOr<std::vector<ScoredImage>> DetectorEvaluation::RunUpright() {
 }
 
 StatusOr<std::vector<ScoredImage>> DetectorEvaluation::RunRotated(double degrees, double q) {
-  return Run([degrees, q](const LabeledPicture& picture, size_t) {
-    return Rotate(picture, degrees, q);
-  });
+  return Run(
+      [degrees, q](const LabeledPicture& picture, size_t) { return Rotate(picture, degrees, q); });
 }
 
 StatusOr<std::vector<ScoredImage>> DetectorEvaluation::RunCut(int class_id, double fraction) {

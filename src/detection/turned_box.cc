@@ -12,8 +12,8 @@ ImageBox TurnBox(const ImageBox& box, const cv::Matx23d& map, double q) {
   const cv::Vec2d centre = map * cv::Vec3d(box.x0 + a, box.y0 + b, 1.0);
   // Support function of the superellipse along each axis of the new picture.
   const auto reach = [&](int axis) {
-    return std::pow(std::pow(std::abs(map(axis, 0)) * a, q) + std::pow(std::abs(map(axis, 1)) * b, q),
-                    1.0 / q);
+    return std::pow(
+        std::pow(std::abs(map(axis, 0)) * a, q) + std::pow(std::abs(map(axis, 1)) * b, q), 1.0 / q);
   };
   const double x = reach(0), y = reach(1);
   return {static_cast<float>(centre[0] - x), static_cast<float>(centre[1] - y),

@@ -99,8 +99,8 @@ struct ObjectMaskOptions {
   double max_step_m = 0.02;
   double box_margin = 0.1;
   double mover_margin = 0.3;
-  int grow_px = 4;
-  int grow_without_depth_px = 12;
+  int grow_px = 0;
+  int grow_without_depth_px = 8;
   double min_depth_share = 0.15;
   double near_depth_share = 0.5;
   double max_image_share = 0.9;
@@ -116,7 +116,7 @@ struct ObjectMaskOptions {
     visit("box_margin", box_margin, "an object may reach beyond its box by this share of the box");
     visit("mover_margin", mover_margin,
           "the same for a mover of unknown class, whose box is only where motion was seen so far");
-    visit("grow_px", grow_px, "the mask is grown by so much, px");
+    visit("grow_px", grow_px, "the mask is grown by so much, px (by whole cells of 4 px)");
     visit("grow_without_depth_px", grow_without_depth_px,
           "and so far over pixels without depth, px");
     visit("min_depth_share", min_depth_share,

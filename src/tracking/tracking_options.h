@@ -94,10 +94,11 @@ struct TrackingOptions {
           "best to second best at the same level, matching the local map");
     visit("undo_rolling_shutter", undo_rolling_shutter,
           "points go where the middle row would show them (camera.rolling_shutter_s)");
-    visit("velocity_trend", velocity_trend,
-          "share of its change since the image before with which the velocity goes on until the "
-          "exposure of this one: all of it would be right, but amplifies noise; 0: the mean velocity "
-          "since the last image");
+    visit(
+        "velocity_trend", velocity_trend,
+        "share of its change since the image before with which the velocity goes on until the "
+        "exposure of this one: all of it would be right, but amplifies noise; 0: the mean velocity "
+        "since the last image");
     visit("undo_stamp_lag", undo_stamp_lag,
           "the trajectory tells where the camera was at the time stamps, not when its images were "
           "exposed (camera.stamp_lag_s)");

@@ -45,7 +45,8 @@ struct AugmentationOptions {
     visit("rotate_degrees", rotate_degrees,
           "largest rotation of the other pictures, degrees to either side");
     visit("turned_outline", turned_outline,
-          "boxes of turned objects: 1 around the turned corners of their boxes, 2 around the ellipses "
+          "boxes of turned objects: 1 around the turned corners of their boxes, 2 around the "
+          "ellipses "
           "in these");
     visit("scale", scale, "pictures are scaled by 1 - scale to 1 + scale");
     visit("translate", translate, "largest shift as a part of the picture's side");
@@ -69,9 +70,9 @@ using Random = std::mt19937_64;
 LabeledImage MakeTrainingPicture(const std::vector<LabeledImage>& images, size_t index, int side,
                                  const AugmentationOptions& options, Random& random);
 
-// `objects` under the affine map (2x3, old pixels to new ones): their boxes as TurnBox(q) draws them,
-// cut to `size`. Objects that keep less than `min_visible` of the mapped box, or less than 2 pixels
-// of a side, are dropped.
+// `objects` under the affine map (2x3, old pixels to new ones): their boxes as TurnBox(q) draws
+// them, cut to `size`. Objects that keep less than `min_visible` of the mapped box, or less than 2
+// pixels of a side, are dropped.
 std::vector<VocObject> TransformObjects(const std::vector<VocObject>& objects,
                                         const cv::Matx23d& map, cv::Size size, double min_visible,
                                         double q = kTurnedCorners);

@@ -73,8 +73,8 @@ inline constexpr double kNormEpsilon = 1e-3;  // of batch norms
 std::string ConvPrefix(const GraphNode& node);
 std::string NormPrefix(const GraphNode& node);
 
-// Reads a dict of tensors written by torch.save or by SaveTensors, as float; of a file whose name ends
-// in .onnx see ReadOnnxWeights.
+// Reads a dict of tensors written by torch.save or by SaveTensors, as float; of a file whose name
+// ends in .onnx see ReadOnnxWeights.
 StatusOr<NamedTensors> LoadTensors(const std::filesystem::path& file);
 Status SaveTensors(const std::filesystem::path& file, const NamedTensors& tensors);
 

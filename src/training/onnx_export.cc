@@ -117,7 +117,8 @@ class GraphExporter {
     for (const char* part : {".weight", ".bias", ".running_mean", ".running_var"}) {
       inputs.push_back(onnx_.Constant(node.name + part, Tensor(node.name + part)));
     }
-    OnnxGraph::Set(onnx_.Node("BatchNormalization", inputs, output), "epsilon", static_cast<float>(kNormEpsilon));
+    OnnxGraph::Set(onnx_.Node("BatchNormalization", inputs, output), "epsilon",
+                   static_cast<float>(kNormEpsilon));
   }
 
   void ExportPool(const GraphNode& node, const std::string& input, const std::string& output) {

@@ -8,8 +8,8 @@
 namespace msf {
 
 // The tensors by their names in a training. The norms that the export folded into convolutions come
-// back as norms that change nothing but add the bias. An error when the file is no readable model, or
-// has no weights of that naming.
+// back as norms that change nothing but add the bias. An error when the file is no readable model,
+// or has no weights of that naming.
 StatusOr<NamedTensors> ReadOnnxWeights(const std::filesystem::path& file);
 
 }  // namespace msf
