@@ -28,6 +28,7 @@ AugmentationOptions GeometryOnly() {
   AugmentationOptions options;
   options.hue = options.saturation = options.value = options.blur = 0.0;
   options.min_visible = 0.0;
+  options.turned_outline = kTurnedCorners;  // rectangles fill their boxes
   return options;
 }
 
