@@ -61,7 +61,9 @@ void AddDetectorExportCommand(CLI::App& app) {
   command->add_option(
       "--model", arguments->model,
       "yolov8n, yolov8n_msf, yolov8n_fpn, yolov8n_hrnet, yolov8n_coco or a YAML file");
-  command->add_option("--weights", arguments->weights, "weights.pt of a training, or COCO weights")
+  command
+      ->add_option("--weights", arguments->weights,
+                   "weights.pt of a training, an ONNX file exported here, or COCO weights")
       ->required();
   command
       ->add_option(

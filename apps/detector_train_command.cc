@@ -98,10 +98,12 @@ void AddDetectorTrainCommand(CLI::App& app) {
                       "yolov8n, yolov8n_msf, yolov8n_fpn, yolov8n_hrnet or a YAML file");
   command->add_option(
       "--init", arguments->init,
-      "weights to start from (YOLOv8n of 80 COCO classes, or of an earlier training)");
-  command->add_option("--start", arguments->start,
-                      "weights.pt of an earlier training of this model to go on from, instead of "
-                      "distillation; --init still names the teacher");
+      "weights to start from (YOLOv8n of 80 COCO classes, or of an earlier training), as .pt or as "
+      "an ONNX file that was exported here");
+  command->add_option(
+      "--start", arguments->start,
+      "weights.pt or ONNX file of an earlier training of this model to go on from, instead of "
+      "distillation; --init still names the teacher");
   command
       ->add_option(
           "--out", arguments->out,

@@ -135,6 +135,11 @@ TEST(OnnxExportTest, HalfPrecisionHalvesTheFile) {
   EXPECT_TRUE(ReadOnnx(file).ok());
 }
 
+TEST(OnnxExportTest, WhatIsNoModelGivesNoWeights) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "none.onnx";
+  EXPECT_NE(LoadTensors(file).status().message().find("none.onnx"), std::string::npos);
+}
+
 TEST(OnnxExportTest, OddSizesAreRefused) {
   const Network network = MakeNetwork("yolov8n");
   OnnxOptions options;
