@@ -153,11 +153,11 @@ cv::Mat1b FindPlaneBlocks(const CoarseDepth& depth, const BlockRays& rays,
   for (int k = 0; k < options.max_planes && !points.empty(); ++k) {
     const std::optional<Plane> plane = BestPlane(samples, points, options, random);
     if (!plane) break;
-    const cv::Mat1b blocks = BlocksOn(*plane, depth, rays, options);
+    cv::Mat1b blocks = BlocksOn(*plane, depth, rays, options);
+    KeepPiecesFromOutside(excluded, blocks);
     if (!IsPartOfObject(blocks, in_mask)) on_plane |= blocks;
     std::erase_if(points, [&](const Eigen::Vector3f& p) { return Lies(p, *plane, options); });
   }
-  KeepPiecesFromOutside(excluded, on_plane);
   return on_plane;
 }
 

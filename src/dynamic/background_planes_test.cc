@@ -2,35 +2,45 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "dynamic/test_scene.h"
 
 namespace msf {
 namespace {
 
+constexpr double kNowhere = std::numeric_limits<double>::infinity();
 constexpr int kBlock_px = BlockRays::kBlockCells * CoarseDepth::kCellSize;
 
 class BackgroundPlanesTest : public ::testing::Test {
  protected:
-  // A floor 1 m below the camera, which looks down on it by 45 degrees, and on it a ball-like thing
-  // in the middle of the image.
-  static CoarseDepth FloorAndThing(double radius_m) {
+  // A floor 1 m below the camera, which looks down on it by 45 degrees, and before it a thing whose
+  // depth along the ray of a pixel is `thing` (infinity where it is not).
+  template <typename Thing>
+  static CoarseDepth FloorAnd(const Thing& thing) {
     const Camera& camera = *TestCamera();
     RgbdFrame frame;
     frame.camera = TestCamera();
     frame.depth = cv::Mat(camera.height, camera.width, CV_16U, cv::Scalar(0));
-    const Eigen::Vector3d down = Eigen::Vector3d(0, 1, 1).normalized(), centre(0, 0, 1.4);
+    const Eigen::Vector3d down = Eigen::Vector3d(0, 1, 1).normalized();
     for (int y = 0; y < camera.height; ++y) {
       for (int x = 0; x < camera.width; ++x) {
         const Eigen::Vector3d ray = camera.Unproject(Eigen::Vector2d(x, y), 1);
-        double z = 1 / down.dot(ray);
-        const double a = ray.squaredNorm(), b = ray.dot(centre),
-                     c = centre.squaredNorm() - radius_m * radius_m, root = b * b - a * c;
-        if (root > 0) z = std::min(z, (b - std::sqrt(root)) / a);
+        const double z = std::min(1 / down.dot(ray), thing(cv::Point(x, y), ray));
         if (z > 0 && z < 8)
           frame.depth.at<uint16_t>(y, x) = static_cast<uint16_t>(z * camera.depth_factor);
       }
     }
     return CoarseDepth(frame);
+  }
+  // A ball-like thing in the middle of the image.
+  static CoarseDepth FloorAndThing(double radius_m) {
+    const Eigen::Vector3d centre(0, 0, 1.4);
+    return FloorAnd([&](const cv::Point&, const Eigen::Vector3d& ray) {
+      const double a = ray.squaredNorm(), b = ray.dot(centre),
+                   c = centre.squaredNorm() - radius_m * radius_m, root = b * b - a * c;
+      return root > 0 ? (b - std::sqrt(root)) / a : kNowhere;
+    });
   }
   cv::Mat1b Find(const CoarseDepth& depth, const cv::Rect& box_px,
                  const PlaneOptions& options = {}) const {
@@ -59,6 +69,18 @@ TEST_F(BackgroundPlanesTest, WhatIsFlatInTheBoxAloneIsNoPlane) {
   const cv::Mat1b blocks = Find(depth, box);
   EXPECT_FALSE(At(blocks, 320, 240));
   EXPECT_TRUE(At(blocks, 40, 40)) << "the wall";
+}
+
+// A sleeve in the box, in the plane of a screen outside of it. Both stand on the floor.
+TEST_F(BackgroundPlanesTest, APieceInTheBoxDoesNotHangOnAnotherPlane) {
+  const cv::Rect screen(0, 80, 200, 400), sleeve(320, 160, 80, 320), box(260, 120, 200, 240);
+  const CoarseDepth depth = FloorAnd([&](const cv::Point& px, const Eigen::Vector3d&) {
+    return screen.contains(px) || sleeve.contains(px) ? 1.4 : kNowhere;
+  });
+  const cv::Mat1b blocks = Find(depth, box);
+  EXPECT_TRUE(At(blocks, 100, 160)) << "the screen";
+  EXPECT_TRUE(At(blocks, 360, 320)) << "the floor in the box";
+  EXPECT_FALSE(At(blocks, 360, 200)) << "the sleeve";
 }
 
 TEST_F(BackgroundPlanesTest, WhatWasAnObjectIsNoPlaneHoweverFlat) {
