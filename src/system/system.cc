@@ -255,7 +255,7 @@ Reconstruction System::Impl::Finish() {
 
 Reconstruction System::Impl::Resolve(const Map& map) const {
   Reconstruction result;
-  result.frames = SmoothTrajectory(recorder_.Resolve(map), options_.tracking.smoothing_s);
+  result.frames = SmoothTrajectory(recorder_.Resolve(map), options_.tracking.smoothing);
   if (options_.tracking.undo_stamp_lag)
     result.frames = UndoStampLag(result.frames, camera_->stamp_lag_s);
   std::map<MapId, int> frames_per_map;

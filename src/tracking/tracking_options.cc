@@ -15,8 +15,12 @@ Status TrackingOptions::Check() const {
   if (local_search_rounds < 1)
     return Status::Error("tracking.local_search_rounds must be at least 1");
   if (recently_lost_s < 0) return Status::Error("tracking.recently_lost_s must not be negative");
-  if (!(smoothing_s >= 0 && smoothing_s <= 1))
-    return Status::Error("tracking.smoothing_s must be from 0 to 1 s");
+  for (const double width_s : {smoothing.position_s, smoothing.rotation_s}) {
+    if (!(width_s >= 0 && width_s <= 1))
+      return Status::Error("tracking.smoothing: widths must be from 0 to 1 s");
+  }
+  if (!(keyframe.hidden_exponent >= 0 && keyframe.hidden_exponent <= 100))
+    return Status::Error("tracking.keyframe.hidden_exponent must be from 0 to 100");
   if (!(velocity_trend >= 0 && velocity_trend <= 1))
     return Status::Error("tracking.velocity_trend must be from 0 to 1");
   for (const double probability : {min_static_probability, readmit_probability,

@@ -11,6 +11,7 @@ namespace msf {
 struct KeyFramePolicyOptions {
   double max_interval_s = 1.0;
   double reference_ratio = 0.85;
+  double hidden_exponent = 2;
   double urgent_ratio = 0.25;
   int min_inliers = 15;
   int min_tracked_close = 100;
@@ -21,13 +22,29 @@ struct KeyFramePolicyOptions {
   void Visit(Visitor& visit) {
     visit("max_interval_s", max_interval_s, "a keyframe is due this long after the last, s");
     visit("reference_ratio", reference_ratio,
-          "wanted when fewer than this share of the reference's points is tracked");
+          "wanted when fewer than this share of the reference's points is tracked ...");
+    visit("hidden_exponent", hidden_exponent,
+          "... sooner while movers hide much: what may be missing counts by the share of features "
+          "that does not move, to this power; 0: as without movers");
     visit("urgent_ratio", urgent_ratio, "wanted even from a busy mapper below this share");
     visit("min_inliers", min_inliers, "never with fewer tracked points");
     visit("min_tracked_close", min_tracked_close, "with fewer tracked close points ...");
     visit("max_untracked_close", max_untracked_close,
           "... and more close points that are not in the map, wanted");
     visit("max_queued", max_queued, "declined while the mapper has this many waiting");
+  }
+};
+
+struct SmoothingOptions {
+  double position_s = 0.1;
+  double rotation_s = 0.045;
+
+  template <typename Visitor>
+  void Visit(Visitor& visit) {
+    visit("position_s", position_s,
+          "positions of the whole run are smoothed over about so long, s; 0: as tracked");
+    visit("rotation_s", rotation_s,
+          "and rotations, which are found more exactly and change faster; 0: as tracked");
   }
 };
 
@@ -50,7 +67,7 @@ struct TrackingOptions {
   bool undo_rolling_shutter = true;
   double velocity_trend = 0.5;
   bool undo_stamp_lag = true;
-  double smoothing_s = 0.035;
+  SmoothingOptions smoothing;
   int min_local_inliers = 30;
   int min_local_inliers_relocalized = 50;
   double recently_lost_s = 3;
@@ -102,8 +119,7 @@ struct TrackingOptions {
     visit("undo_stamp_lag", undo_stamp_lag,
           "the trajectory tells where the camera was at the time stamps, not when its images were "
           "exposed (camera.stamp_lag_s)");
-    visit("smoothing_s", smoothing_s,
-          "the trajectory of the whole run is smoothed over about so long, s; 0: as tracked");
+    visit("smoothing", smoothing, "");
     visit("min_local_inliers", min_local_inliers, "inliers with which a frame counts as tracked");
     visit("min_local_inliers_relocalized", min_local_inliers_relocalized,
           "the same within a second of relocalisation");

@@ -7,7 +7,8 @@ namespace msf {
 namespace {
 
 constexpr double kReachInWidths = 3;  // beyond, a frame's weight is below a hundredth
-constexpr int kMinFrames = 5;         // a second degree fits three frames whatever their noise
+constexpr int kNumPowers = 5;         // a fourth degree
+constexpr size_t kMinFrames = 7;      // as many as powers would be fitted whatever their noise
 
 // The frames around `i`, itself included, that are near enough in time and hang together with it.
 struct Neighbourhood {
@@ -25,18 +26,24 @@ Neighbourhood Around(const std::vector<ResolvedFrame>& frames, size_t i, double 
   return around;
 }
 
-// What takes frame `i` to the place where the motion of its neighbours says it was.
-Vector6d Correction(const std::vector<ResolvedFrame>& frames, size_t i, Neighbourhood around,
-                    double width_s) {
-  const Rigid3d T_iw = frames[i].T_wc->Inverse();
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Matrix<double, 3, 6> right = Eigen::Matrix<double, 3, 6>::Zero();
+// Where the motion of its neighbours puts frame `i` of what `value` (a vector of a frame's pose)
+// is; zero, with too few of them, where `value` is zero at frame `i`.
+template <typename Value>
+Eigen::Vector3d Fit(const std::vector<ResolvedFrame>& frames, size_t i, double width_s,
+                    const Value& value) {
+  const Neighbourhood around = Around(frames, i, kReachInWidths * width_s);
+  if (around.end - around.begin < kMinFrames) return Eigen::Vector3d::Zero();
+  Eigen::Matrix<double, kNumPowers, kNumPowers> normal =
+      Eigen::Matrix<double, kNumPowers, kNumPowers>::Zero();
+  Eigen::Matrix<double, kNumPowers, 3> right = Eigen::Matrix<double, kNumPowers, 3>::Zero();
   for (size_t k = around.begin; k < around.end; ++k) {
     const double time = (frames[k].time_s - frames[i].time_s) / width_s;
     const double weight = std::exp(-0.5 * time * time);
-    const Eigen::Vector3d powers(1, time, time * time);
+    Eigen::Matrix<double, kNumPowers, 1> powers;
+    powers(0) = 1;
+    for (int p = 1; p < kNumPowers; ++p) powers(p) = powers(p - 1) * time;
     normal += weight * powers * powers.transpose();
-    right += weight * powers * (T_iw * *frames[k].T_wc).Log().transpose();
+    right += weight * powers * value(*frames[k].T_wc).transpose();
   }
   return normal.ldlt().solve(right).row(0).transpose();
 }
@@ -44,14 +51,25 @@ Vector6d Correction(const std::vector<ResolvedFrame>& frames, size_t i, Neighbou
 }  // namespace
 
 std::vector<ResolvedFrame> SmoothTrajectory(const std::vector<ResolvedFrame>& frames,
-                                            double width_s) {
+                                            const SmoothingOptions& options) {
   std::vector<ResolvedFrame> smooth = frames;
-  if (width_s <= 0) return smooth;
   for (size_t i = 0; i < frames.size(); ++i) {
     if (!frames[i].T_wc) continue;
-    const Neighbourhood around = Around(frames, i, kReachInWidths * width_s);
-    if (around.end - around.begin < kMinFrames) continue;
-    smooth[i].T_wc = *frames[i].T_wc * Rigid3d::Exp(Correction(frames, i, around, width_s));
+    const Rigid3d& T_wi = *frames[i].T_wc;
+    Eigen::Vector3d position = T_wi.translation();
+    Eigen::Quaterniond rotation = T_wi.rotation();
+    if (options.position_s > 0) {
+      position += Fit(frames, i, options.position_s, [&](const Rigid3d& T_wk) -> Eigen::Vector3d {
+        return T_wk.translation() - T_wi.translation();
+      });
+    }
+    if (options.rotation_s > 0) {
+      rotation =
+          rotation * ExpRotation(Fit(frames, i, options.rotation_s, [&](const Rigid3d& T_wk) {
+            return LogRotation(T_wi.rotation().conjugate() * T_wk.rotation());
+          }));
+    }
+    smooth[i].T_wc = Rigid3d(rotation, position);
   }
   return smooth;
 }

@@ -3,17 +3,17 @@
 
 #include <vector>
 
+#include "tracking/tracking_options.h"
 #include "tracking/trajectory_recorder.h"
 
 namespace msf {
 
-// The frames, in the order of time, with their poses on a smooth path: each pose is that of a
-// motion of second degree fitted to the poses around it, which count less the farther away in time
-// they are (a Gaussian of standard deviation `width_s`; local regression, Cleveland 1979). Motions
-// slower than about 0.2 / width_s Hz stay as they are. Only frames of the same map without a gap
-// between them are fitted together; a frame with too few of them keeps its pose, and so do all with
-// a width of 0.
+// The frames, in the order of time, with their poses on a smooth path: positions and rotations are
+// those of motions of fourth degree fitted to the frames around, which count less the farther away
+// in time they are (Gaussians of the standard deviations in `options`; local regression, Cleveland
+// 1979). Motions slower than about 0.2 / width Hz stay as they are. Only frames of the same map
+// without a gap between them are fitted together; a frame with too few of them keeps what it has.
 std::vector<ResolvedFrame> SmoothTrajectory(const std::vector<ResolvedFrame>& frames,
-                                            double width_s);
+                                            const SmoothingOptions& options);
 
 }  // namespace msf

@@ -8,7 +8,8 @@
 namespace msf {
 namespace {
 
-constexpr double kWidth_s = 0.035;
+const SmoothingOptions kWidths;
+const SmoothingOptions kNone{.position_s = 0, .rotation_s = 0};
 
 // A hand that swings once a second while it turns.
 Rigid3d PoseAt(double time_s) {
@@ -41,16 +42,16 @@ double MeanError(const std::vector<ResolvedFrame>& frames) {
 
 TEST(SmoothTrajectory, TakesNoiseOutOfTheMotion) {
   const std::vector<ResolvedFrame> frames = Swing(300, 0.003);
-  EXPECT_LT(MeanError(SmoothTrajectory(frames, kWidth_s)), 0.8 * MeanError(frames));
+  EXPECT_LT(MeanError(SmoothTrajectory(frames, kWidths)), 0.8 * MeanError(frames));
 }
 
 TEST(SmoothTrajectory, LeavesTheMotionOfAHand) {
-  EXPECT_LT(MeanError(SmoothTrajectory(Swing(300, 0), kWidth_s)), 1e-4);
+  EXPECT_LT(MeanError(SmoothTrajectory(Swing(300, 0), kWidths)), 1e-4);
 }
 
 TEST(SmoothTrajectory, LeavesAllAsItWasWithAWidthOfZero) {
   const std::vector<ResolvedFrame> frames = Swing(30, 0.003);
-  const std::vector<ResolvedFrame> same = SmoothTrajectory(frames, 0);
+  const std::vector<ResolvedFrame> same = SmoothTrajectory(frames, kNone);
   for (size_t i = 0; i < frames.size(); ++i)
     EXPECT_LT(Distance(*same[i].T_wc, *frames[i].T_wc), 1e-12) << i;
 }
@@ -61,7 +62,7 @@ TEST(SmoothTrajectory, FitsOnlyWhatHangsTogether) {
   for (int i = 10; i < 20; ++i) frames[i].map_id = MapId(1);
   frames[9].T_wc.reset();
   frames[22].T_wc.reset();  // leaves two frames between it and the other map
-  const std::vector<ResolvedFrame> smooth = SmoothTrajectory(frames, kWidth_s);
+  const std::vector<ResolvedFrame> smooth = SmoothTrajectory(frames, kWidths);
   EXPECT_FALSE(smooth[9].T_wc.has_value());
   for (const size_t i : {8u, 10u, 19u, 23u})
     EXPECT_LT(Distance(*smooth[i].T_wc, *frames[i].T_wc), 0.02) << i;
@@ -70,11 +71,11 @@ TEST(SmoothTrajectory, FitsOnlyWhatHangsTogether) {
 }
 
 TEST(SmoothTrajectory, NeedsMoreFramesThanItFits) {
-  const std::vector<ResolvedFrame> few = Swing(4, 0.003);
-  const std::vector<ResolvedFrame> same = SmoothTrajectory(few, kWidth_s);
+  const std::vector<ResolvedFrame> few = Swing(6, 0.003);
+  const std::vector<ResolvedFrame> same = SmoothTrajectory(few, kWidths);
   for (size_t i = 0; i < few.size(); ++i)
     EXPECT_LT(Distance(*same[i].T_wc, *few[i].T_wc), 1e-12) << i;
-  EXPECT_TRUE(SmoothTrajectory({}, kWidth_s).empty());
+  EXPECT_TRUE(SmoothTrajectory({}, kWidths).empty());
 }
 
 }  // namespace
