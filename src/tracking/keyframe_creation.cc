@@ -79,6 +79,9 @@ KeyFrameEvidence GatherEvidence(const TrackingContext& context, const Map& map,
     if (features.static_weight[i] < context.options.min_static_probability) continue;
     (frame.points[i].valid() ? evidence.tracked_close : evidence.untracked_close) += 1;
   }
+  const int num_hidden = frame.removed ? frame.removed->size() : 0;
+  evidence.hidden_share =
+      static_cast<double>(num_hidden) / std::max(1, num_hidden + features.size());
   return evidence;
 }
 

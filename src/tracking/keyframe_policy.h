@@ -18,6 +18,7 @@ struct KeyFrameEvidence {
   int reference_points = 0;  // well-observed points of the reference keyframe
   int tracked_close = 0;     // close features with a tracked point
   int untracked_close = 0;   // close features that the map does not have
+  double hidden_share = 0;   // of all features, those that are left out because they seem to move
 };
 
 bool WantsKeyFrame(const KeyFrameEvidence& evidence, const MappingLoad& load,

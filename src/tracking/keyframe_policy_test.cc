@@ -30,6 +30,15 @@ TEST(KeyFramePolicy, WeakeningTieIsOneWhenTheMapperIsIdle) {
   EXPECT_TRUE(WantsKeyFrame(evidence, {.idle = false}, {})) << "it is due";
 }
 
+TEST(KeyFramePolicy, ComesSoonerWhileMoversHideTheRoom) {
+  KeyFrameEvidence evidence = WellTracked();
+  evidence.hidden_share = 0.4;
+  EXPECT_TRUE(WantsKeyFrame(evidence, {.idle = true}, {}));
+  EXPECT_FALSE(WantsKeyFrame(evidence, {.idle = true}, {.hidden_exponent = 0}));
+  evidence.inliers = evidence.reference_points;
+  EXPECT_FALSE(WantsKeyFrame(evidence, {.idle = true}, {})) << "it shows nothing new";
+}
+
 TEST(KeyFramePolicy, UrgentOneInterruptsABusyMapperUnlessItsQueueIsFull) {
   KeyFrameEvidence evidence = WellTracked();
   evidence.inliers = 60;
