@@ -122,19 +122,20 @@ bool IsPartOfObject(const cv::Mat1b& on_plane, const cv::Mat1b& in_mask) {
   return cv::countNonZero(on_plane & in_mask) > kMost * cv::countNonZero(on_plane);
 }
 
-// Drops the pieces that are excluded as a whole.
+// Drops the pieces that are excluded as a whole or almost so: a box that is a little too small
+// leaves an edge of its object outside.
 void KeepPiecesFromOutside(const cv::Mat1b& excluded, cv::Mat1b& on_plane) {
+  constexpr int kMostInside = 3;  // times what is outside
   cv::Mat1i pieces;
   const int count = cv::connectedComponents(on_plane, pieces, 4, CV_32S);
-  std::vector<uint8_t> outside(count, 0);
+  std::vector<int> inside(count, 0), outside(count, 0);
   for (int r = 0; r < pieces.rows; ++r) {
-    for (int c = 0; c < pieces.cols; ++c) {
-      if (excluded(r, c) == 0) outside[pieces(r, c)] = 1;
-    }
+    for (int c = 0; c < pieces.cols; ++c) ++(excluded(r, c) != 0 ? inside : outside)[pieces(r, c)];
   }
   for (int r = 0; r < pieces.rows; ++r) {
     for (int c = 0; c < pieces.cols; ++c) {
-      if (outside[pieces(r, c)] == 0) on_plane(r, c) = 0;
+      const int piece = pieces(r, c);
+      if (inside[piece] > kMostInside * outside[piece]) on_plane(r, c) = 0;
     }
   }
 }

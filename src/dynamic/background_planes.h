@@ -8,7 +8,8 @@
 namespace msf {
 
 // Blocks on planes: 255, others 0. Those where `excluded` is 255 make none and must hang together
-// with a part of the plane where it is not: a box may hold something flat that moves. Nor is a
+// with a part of their plane where it is not, and which is not much smaller: a box may hold
+// something flat that moves, and be too small for it. Nor is a
 // plane what lies for the most part where `in_mask` is 255, in what was an object a moment ago.
 // Consensus over samples decided by `seed`.
 cv::Mat1b FindPlaneBlocks(const CoarseDepth& depth, const BlockRays& rays,

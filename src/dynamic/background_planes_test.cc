@@ -83,6 +83,15 @@ TEST_F(BackgroundPlanesTest, APieceInTheBoxDoesNotHangOnAnotherPlane) {
   EXPECT_FALSE(At(blocks, 360, 200)) << "the sleeve";
 }
 
+TEST_F(BackgroundPlanesTest, TheEdgeOfAnObjectBesideItsBoxIsNoOutside) {
+  const cv::Rect back(160, 120, 320, 240), box(160, 120, 280, 240);
+  const CoarseDepth depth(DepthFrame(3, {{back, 2.0f}}));
+  PlaneOptions options;
+  options.min_share = 0.01;  // so that the edge makes a plane
+  EXPECT_FALSE(At(Find(depth, box, options), 320, 240));
+  EXPECT_TRUE(At(Find(depth, {160, 120, 40, 240}, options), 180, 240)) << "most is outside";
+}
+
 TEST_F(BackgroundPlanesTest, WhatWasAnObjectIsNoPlaneHoweverFlat) {
   const cv::Rect back(200, 160, 240, 160);
   const CoarseDepth depth(DepthFrame(3, {{back, 2.0f}}));
