@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kReachInWidths = 3;  // beyond, a frame's weight is below a hundredth
 constexpr int kNumPowers = 5;         // a fourth degree
-constexpr size_t kMinFrames = 7;      // as many as powers would be fitted whatever their noise
+constexpr size_t kMinFrames = 7;      // five would be met exactly, noise and all
 
 // The frames around `i`, itself included, that are near enough in time and hang together with it.
 struct Neighbourhood {
@@ -26,11 +26,12 @@ Neighbourhood Around(const std::vector<ResolvedFrame>& frames, size_t i, double 
   return around;
 }
 
-// Where the motion of its neighbours puts frame `i` of what `value` (a vector of a frame's pose)
-// is; zero, with too few of them, where `value` is zero at frame `i`.
-template <typename Value>
-Eigen::Vector3d Fit(const std::vector<ResolvedFrame>& frames, size_t i, double width_s,
-                    const Value& value) {
+// How far the motion of its neighbours leads away from the pose of frame `i`, where `difference`
+// says how far another pose is from it; zero with a width of 0 or too few neighbours.
+template <typename Difference>
+Eigen::Vector3d Correction(const std::vector<ResolvedFrame>& frames, size_t i, double width_s,
+                           const Difference& difference) {
+  if (width_s <= 0) return Eigen::Vector3d::Zero();
   const Neighbourhood around = Around(frames, i, kReachInWidths * width_s);
   if (around.end - around.begin < kMinFrames) return Eigen::Vector3d::Zero();
   Eigen::Matrix<double, kNumPowers, kNumPowers> normal =
@@ -43,7 +44,7 @@ Eigen::Vector3d Fit(const std::vector<ResolvedFrame>& frames, size_t i, double w
     powers(0) = 1;
     for (int p = 1; p < kNumPowers; ++p) powers(p) = powers(p - 1) * time;
     normal += weight * powers * powers.transpose();
-    right += weight * powers * value(*frames[k].T_wc).transpose();
+    right += weight * powers * difference(*frames[k].T_wc).transpose();
   }
   return normal.ldlt().solve(right).row(0).transpose();
 }
@@ -56,20 +57,15 @@ std::vector<ResolvedFrame> SmoothTrajectory(const std::vector<ResolvedFrame>& fr
   for (size_t i = 0; i < frames.size(); ++i) {
     if (!frames[i].T_wc) continue;
     const Rigid3d& T_wi = *frames[i].T_wc;
-    Eigen::Vector3d position = T_wi.translation();
-    Eigen::Quaterniond rotation = T_wi.rotation();
-    if (options.position_s > 0) {
-      position += Fit(frames, i, options.position_s, [&](const Rigid3d& T_wk) -> Eigen::Vector3d {
-        return T_wk.translation() - T_wi.translation();
-      });
-    }
-    if (options.rotation_s > 0) {
-      rotation =
-          rotation * ExpRotation(Fit(frames, i, options.rotation_s, [&](const Rigid3d& T_wk) {
-            return LogRotation(T_wi.rotation().conjugate() * T_wk.rotation());
-          }));
-    }
-    smooth[i].T_wc = Rigid3d(rotation, position);
+    const Eigen::Vector3d shift =
+        Correction(frames, i, options.position_s, [&](const Rigid3d& T_wk) -> Eigen::Vector3d {
+          return T_wk.translation() - T_wi.translation();
+        });
+    const Eigen::Vector3d turn =
+        Correction(frames, i, options.rotation_s, [&](const Rigid3d& T_wk) {
+          return LogRotation(T_wi.rotation().conjugate() * T_wk.rotation());
+        });
+    smooth[i].T_wc = Rigid3d(T_wi.rotation() * ExpRotation(turn), T_wi.translation() + shift);
   }
   return smooth;
 }
