@@ -13,13 +13,13 @@ namespace {
 constexpr double kPrimeSenseShutter_s = 0.023;
 
 // Measured: the camera agrees with the ground truth 4 ms (position, fr1_xyz) to 8 ms (rotation,
-// fr1_xyz) earlier, and all of fr1_xyz and fr1_rpy 5 to 6 ms earlier when the shutter is undone by
-// the true velocity.
+// fr1_xyz) earlier; when the shutter is undone by the true velocity, 5 to 6 ms (rotation) and 4 to
+// 7 ms (position) on fr1_xyz and fr1_rpy.
 constexpr double kFreiburg1StampLag_s = 0.006;
 
 // 5000 by the data set's description, but depth is short: the path of fr1_xyz comes out 0.5 to
-// 0.9 % too small with it (that of fr1_rpy, a short one, by 0.2 to 0.6 %), with another SLAM system
-// as well (0.75 %).
+// 0.9 % too small with it, with another SLAM system as well (0.75 %). The path of fr1_rpy is too
+// short to tell (docs/measurements.md).
 constexpr double kFreiburg1DepthFactor = 4970;
 
 // Sturm et al. 2012 (TUM RGB-D) and Palazzolo et al. 2019 (Bonn): the calibrations that come with

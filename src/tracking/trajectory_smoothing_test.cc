@@ -56,6 +56,17 @@ TEST(SmoothTrajectory, LeavesAllAsItWasWithAWidthOfZero) {
     EXPECT_LT(Distance(*same[i].T_wc, *frames[i].T_wc), 1e-12) << i;
 }
 
+TEST(SmoothTrajectory, SmoothsPositionsAndRotationsApart) {
+  const std::vector<ResolvedFrame> frames = Swing(60, 0.003);
+  const std::vector<ResolvedFrame> moved = SmoothTrajectory(frames, {.rotation_s = 0});
+  const std::vector<ResolvedFrame> turned = SmoothTrajectory(frames, {.position_s = 0});
+  const Rigid3d &found = *frames[30].T_wc, &shifted = *moved[30].T_wc, &rotated = *turned[30].T_wc;
+  EXPECT_LT(found.rotation().angularDistance(shifted.rotation()), 1e-9);
+  EXPECT_GT((found.translation() - shifted.translation()).norm(), 1e-5);
+  EXPECT_GT(found.rotation().angularDistance(rotated.rotation()), 1e-5);
+  EXPECT_LT((found.translation() - rotated.translation()).norm(), 1e-12);
+}
+
 TEST(SmoothTrajectory, FitsOnlyWhatHangsTogether) {
   std::vector<ResolvedFrame> frames = Swing(30, 0.003);
   for (int i = 10; i < 30; ++i) frames[i].T_wc = Rigid3d::Exp(Vector6d::Ones()) * *frames[i].T_wc;
