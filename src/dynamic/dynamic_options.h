@@ -133,6 +133,7 @@ struct ObjectTrackOptions {
   double min_iou = 0.25;
   double bridge_s = 0.7;
   double bridge_per_detection_s = 0.1;
+  double weak_s = 0.5;
   double sure_score = 0.5;
   double bridge_still_s = 2.5;
   double start_score = 0.25;
@@ -156,6 +157,9 @@ struct ObjectTrackOptions {
     visit("bridge_per_detection_s", bridge_per_detection_s,
           "but one that was never found with sure_score only for so long per detection, and for as "
           "long as detections take to come, s");
+    visit("weak_s", weak_s,
+          "detections that could not start an object continue it for so long after one that could, "
+          "or after it was seen to move, s");
     visit("sure_score", sure_score, "score of a detection that leaves no doubt");
     visit("bridge_still_s", bridge_still_s,
           "the same for one that was detected often and still looks the same in depth, s");

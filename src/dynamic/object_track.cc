@@ -73,9 +73,12 @@ ObjectTrack* ObjectTracks::FindMatch(const Detection& detection, ObjectKind kind
     if (taken[t] || (track.kind != kind && !may_turn_out)) continue;
     const float iou = IntersectionOverUnion(detection.box, track.box);
     const float contained = Containment(detection.box, track.box);
-    // A weak detection must look like the object itself.
+    // A weak detection, or one of another class, must look like the object itself.
+    const bool same_class = track.class_id < 0 || track.class_id == detection.class_id;
     const bool weak = detection.score < start_score;
-    if (weak ? iou < kSameBox : iou < options_.min_iou && contained < kMostlyInside) continue;
+    if (weak && !same_class) continue;
+    if (weak || !same_class ? iou < kSameBox : iou < options_.min_iou && contained < kMostlyInside)
+      continue;
     const float overlap = iou + 0.1f * contained;
     if (overlap > best_overlap) {
       best_overlap = overlap;
@@ -124,6 +127,9 @@ void ObjectTracks::TakeDetections(const std::vector<Detection>& detections, doub
       track->resting_since_s = time_s;
       taken.push_back(0);
     }
+    if (detection.score >= roles_.StartScoreOf(detection.class_id)) track->seen_well_s = time_s;
+    // Clutter gets weak detections, too.
+    if (time_s - track->seen_well_s > options_.weak_s) continue;
     taken[track - tracks_.data()] = 1;
     track->kind = *kind;
     track->class_id = detection.class_id;
@@ -195,7 +201,7 @@ void ObjectTracks::UpdateState(ObjectTrack& track, double time_s) const {
   const MotionEvidence& evidence = track.evidence;
   if (evidence.NewShare() > options_.new_share) {
     track.state = MotionState::kMoving;
-    track.confirmed_s = track.resting_since_s = time_s;
+    track.confirmed_s = track.seen_well_s = track.resting_since_s = time_s;
     return;
   }
   if (evidence.tested < options_.min_tested_points) {
@@ -205,7 +211,7 @@ void ObjectTracks::UpdateState(ObjectTrack& track, double time_s) const {
   }
   const double share = evidence.MovingShare();
   const bool known = track.kind == ObjectKind::kKnown;
-  if (share >= options_.mover_share) track.confirmed_s = time_s;
+  if (share >= options_.mover_share) track.confirmed_s = track.seen_well_s = time_s;
   if (share >= (known ? options_.moving_share : options_.mover_share)) {
     track.state = MotionState::kMoving;
     track.resting_since_s = time_s;

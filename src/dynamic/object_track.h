@@ -39,6 +39,7 @@ struct ObjectTrack {
   Eigen::Vector2f own_velocity_px_s =
       Eigen::Vector2f::Zero();  // beyond what the camera's motion does to it
   double confirmed_s = 0;       // last detection, or last time its motion was seen
+  double seen_well_s = 0;       // last detection that could have started it, or motion
   double detection_age_s = 0;   // of the last detection when it came
   double resting_since_s = 0;
   int confirmations = 0;

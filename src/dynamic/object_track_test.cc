@@ -71,12 +71,41 @@ TEST_F(Detected, ATrackIsContinuedWhereItOverlaps) {
 
 TEST_F(Detected, AWeakDetectionContinuesOnlyWhatLooksTheSame) {
   tracks_.TakeDetections({{kPerson, 0.9f, kHere}}, 1);
-  tracks_.TakeDetections({{kPerson, 0.12f, {110, 100, 210, 300}}}, 2);  // 90 / 110 of it
+  tracks_.TakeDetections({{kPerson, 0.12f, {110, 100, 210, 300}}}, 1.1);  // 90 / 110 of it
   EXPECT_EQ(Only().confirmations, 2);
-  tracks_.TakeDetections({{kPerson, 0.12f, {160, 100, 260, 300}}}, 3);  // 50 / 150 of it
+  tracks_.TakeDetections({{kPerson, 0.12f, {160, 100, 260, 300}}}, 1.2);  // 50 / 150 of it
   EXPECT_EQ(Only().confirmations, 2);
-  tracks_.TakeDetections({{kPerson, 0.09f, Only().box}}, 4);
+  tracks_.TakeDetections({{kPerson, 0.09f, Only().box}}, 1.3);
   EXPECT_EQ(Only().confirmations, 2);
+}
+
+TEST_F(Detected, WeakDetectionsAloneDoNotKeepATrackForLong) {
+  tracks_.TakeDetections({{kPerson, 0.9f, kHere}}, 1);
+  tracks_.TakeDetections({{kPerson, 0.12f, kHere}}, 1.4);
+  EXPECT_EQ(Only().confirmed_s, 1.4);
+  tracks_.TakeDetections({{kPerson, 0.12f, kHere}}, 1.6);
+  EXPECT_EQ(Only().confirmed_s, 1.4) << "something else may have taken the person's place";
+  tracks_.TakeDetections({{kPerson, 0.3f, kHere}}, 1.7);
+  EXPECT_EQ(Only().confirmed_s, 1.7) << "strong enough to start one";
+}
+
+TEST_F(Detected, WeakDetectionsKeepATrackThatIsSeenToMove) {
+  tracks_.TakeDetections({{kPerson, 0.9f, kHere}}, 1);
+  Judge(20, 15, 1.5);
+  tracks_.TakeDetections({{kPerson, 0.12f, kHere}}, 1.9);
+  EXPECT_EQ(Only().confirmed_s, 1.9);
+}
+
+TEST_F(Detected, ADetectionOfAnotherClassMustBeStrongAndLookTheSame) {
+  ObjectTracks tracks(ObjectTrackOptions(), *ClassRoles::Create({}, {"person", "cat"}));
+  constexpr int kCat = 1;
+  tracks.TakeDetections({{kPerson, 0.9f, kHere}}, 1);
+  tracks.TakeDetections({{kCat, 0.2f, kHere}}, 1.1);
+  EXPECT_EQ(tracks.tracks()[0].class_id, kPerson) << "weak";
+  tracks.TakeDetections({{kCat, 0.3f, kHere}}, 1.2);
+  EXPECT_EQ(tracks.tracks()[0].class_id, kCat) << "the same thing under another name";
+  tracks.TakeDetections({{kPerson, 0.9f, {150, 100, 250, 300}}}, 1.3);  // a third in common
+  EXPECT_EQ(tracks.tracks().size(), 2u) << "elsewhere";
 }
 
 TEST_F(Detected, AWeakDetectionIsOfUseNearATrackOfItsKindOnly) {

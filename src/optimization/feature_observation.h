@@ -39,26 +39,41 @@ struct NoiseOptions {
   }
 };
 
-// The observation of feature `i`, weighted by `static_weight`.
-inline ImageObservation ObserveFeature(const FrameFeatures& features, int i, const Camera& camera,
+// What of a feature an observation is made of.
+struct FeaturePlace {
+  Eigen::Vector2f uv_px;  // undistorted
+  float depth_m = 0;      // 0 = none
+  uint8_t level = 0;
+};
+
+// The observation of a feature, weighted by `static_weight`.
+inline ImageObservation ObserveFeature(const FeaturePlace& feature, const Camera& camera,
                                        const ScaleLevels& levels, const NoiseOptions& noise,
                                        double static_weight) {
   ImageObservation observation;
-  const double scale = levels.scale(features.level[i]);
+  const double scale = levels.scale(feature.level);
   const double position_sigma_px = noise.position_sigma_px * scale;
-  observation.uv_px = features.uv_px[i].cast<double>();
+  observation.uv_px = feature.uv_px.cast<double>();
   observation.inv_sigma2 = 1 / (position_sigma_px * position_sigma_px);
-  if (features.HasDepth(i)) {
+  if (feature.depth_m > 0) {
     const double own_sigma_px =
         noise.disparity_sigma_px > 0 ? noise.disparity_sigma_px : camera.disparity_noise_px;
     const double sigma_px = own_sigma_px * (1 + noise.disparity_level_share * (scale - 1));
-    observation.disparity_px = features.uv_px[i].x() - features.u_right_px[i];
+    observation.disparity_px = camera.bf / feature.depth_m;
     observation.inv_sigma2_disparity = 1 / (sigma_px * sigma_px);
     if (noise.disparity_knee > 0)
       observation.inv_knee_disparity = 1 / (noise.disparity_knee * noise.disparity_knee);
   }
   observation.weight = static_weight;
   return observation;
+}
+
+// The same for feature `i` of a frame.
+inline ImageObservation ObserveFeature(const FrameFeatures& features, int i, const Camera& camera,
+                                       const ScaleLevels& levels, const NoiseOptions& noise,
+                                       double static_weight) {
+  return ObserveFeature({features.uv_px[i], features.depth_m[i], features.level[i]}, camera, levels,
+                        noise, static_weight);
 }
 
 }  // namespace msf

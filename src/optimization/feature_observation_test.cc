@@ -11,7 +11,7 @@ class FeatureObservationTest : public testing::Test {
     camera_.disparity_noise_px = 0.5;
     features_.uv_px = {{100, 50}, {200, 80}};
     features_.depth_m = {2, 0};
-    features_.u_right_px = {80, -1};
+    camera_.bf = 40;
     features_.level = {0, 2};
     features_.static_weight = {1, 1};
   }

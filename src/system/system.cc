@@ -5,6 +5,7 @@
 
 #include "loop_closing/full_bundle.h"
 #include "system/worker.h"
+#include "tracking/hindsight.h"
 #include "tracking/stamp_lag.h"
 #include "tracking/tracker.h"
 #include "tracking/trajectory_smoothing.h"
@@ -17,6 +18,7 @@ constexpr const char* kShippedVocabulary = "models/vocabulary.msfvoc";
 constexpr size_t kMappingQueue = 8;
 constexpr size_t kLoopClosingQueue = 64;
 constexpr size_t kFullBundleQueue = 4;
+constexpr size_t kHindsightQueue = 64;
 
 StatusOr<std::shared_ptr<const Vocabulary>> LoadVocabulary(const std::string& file) {
   std::filesystem::path path = file;
@@ -66,6 +68,8 @@ class System::Impl {
   void MapKeyFrame(KeyFrameId id);
   void CloseLoops(KeyFrameId id);
   void RequestFullBundle(MapId id);
+  void LookBackLater(const TrackingResult& result);
+  void LookBack(std::vector<TrackedFrame> frames);
   Reconstruction Resolve(const Map& map) const;
 
   const SystemOptions options_;
@@ -80,6 +84,8 @@ class System::Impl {
   LoopCloser loop_closer_;
   FullBundle full_bundle_;
   TrajectoryRecorder recorder_;
+  FrameDelay frame_delay_;
+  Hindsight hindsight_;
   std::vector<std::shared_ptr<Observer>> observers_;
   uint64_t filter_epoch_ = 0;        // of the map that the filter's poses belong to
   double last_time_s_ = -1e300;      // of the present frame
@@ -87,6 +93,7 @@ class System::Impl {
   std::atomic<int> num_loops_ = 0, num_merges_ = 0;
   std::atomic<bool> cancel_full_bundle_ = false;
   // Null in deterministic mode. Declared last so that they stop before what they work on goes.
+  std::unique_ptr<Worker<TrackedFrame>> hindsight_worker_;
   std::unique_ptr<Worker<MapId>> full_bundle_worker_;
   std::unique_ptr<Worker<KeyFrameId>> loop_worker_;
   std::unique_ptr<Worker<KeyFrameId>> mapping_worker_;
@@ -103,12 +110,16 @@ System::Impl::Impl(const SystemOptions& options, const Camera& camera,
                extractor_.levels(), map_, vocabulary, database_),
       mapper_(options.mapping, options.noise, map_, vocabulary),
       loop_closer_(options.loop_closing, options.noise, map_, database_, options.seed),
-      full_bundle_(options.loop_closing, options.noise, map_) {
+      full_bundle_(options.loop_closing, options.noise, map_),
+      frame_delay_(options.tracking.hindsight.after_s),
+      hindsight_({*camera_, extractor_.levels(), options_.tracking, options_.noise}, map_) {
   if (detector) {
     detection_source_ = std::make_unique<DetectionSource>(std::move(detector), options.detection,
                                                           !options.deterministic);
   }
   if (options.deterministic) return;
+  hindsight_worker_ = std::make_unique<Worker<TrackedFrame>>(
+      kHindsightQueue, [this](const TrackedFrame& frame) { hindsight_.Match(frame); });
   full_bundle_worker_ = std::make_unique<Worker<MapId>>(kFullBundleQueue, [this](MapId id) {
     cancel_full_bundle_ = false;
     full_bundle_.Run(id, cancel_full_bundle_);
@@ -164,6 +175,7 @@ StatusOr<TrackingResult> System::Impl::Track(const RgbdFramePtr& frame) {
   }
   recorder_.Record(result);
   if (result.new_keyframe) HandOn(*result.new_keyframe);
+  LookBackLater(result);
   for (const auto& observer : observers_) observer->OnFrame(result);
   return result;
 }
@@ -239,12 +251,35 @@ void System::Impl::RequestFullBundle(MapId id) {
   }
 }
 
+void System::Impl::LookBackLater(const TrackingResult& result) {
+  if (!result.T_cw || options_.tracking.hindsight.after_s < 0) return;
+  frame_delay_.Add({.id = result.frame_id,
+                    .time_s = result.time_s,
+                    .features = result.features,
+                    .points = result.points,
+                    .reference = result.reference,
+                    .T_c_reference = result.T_c_reference});
+  LookBack(frame_delay_.TakeDue());
+}
+
+void System::Impl::LookBack(std::vector<TrackedFrame> frames) {
+  for (TrackedFrame& frame : frames) {
+    if (hindsight_worker_) {
+      hindsight_worker_->Push(std::move(frame));
+    } else {
+      hindsight_.Match(frame);
+    }
+  }
+}
+
 Reconstruction System::Impl::Finish() {
   if (mapping_worker_) {
     mapping_worker_->Finish();
     loop_worker_->Finish();
     full_bundle_worker_->Finish();
   }
+  LookBack(frame_delay_.TakeAll());
+  if (hindsight_worker_) hindsight_worker_->Finish();
   if (options_.final_bundle) {
     cancel_full_bundle_ = false;
     const std::vector<MapId> maps = map_.Read()->MapIds();
@@ -255,7 +290,9 @@ Reconstruction System::Impl::Finish() {
 
 Reconstruction System::Impl::Resolve(const Map& map) const {
   Reconstruction result;
-  result.frames = SmoothTrajectory(recorder_.Resolve(map), options_.tracking.smoothing);
+  result.frames = recorder_.Resolve(map);
+  hindsight_.Revise(map, result.frames);
+  result.frames = SmoothTrajectory(result.frames, options_.tracking.smoothing);
   if (options_.tracking.undo_stamp_lag)
     result.frames = UndoStampLag(result.frames, camera_->stamp_lag_s);
   std::map<MapId, int> frames_per_map;

@@ -381,6 +381,8 @@ void Tracker::RememberFrame(bool tracked, TrackingResult& result) {
   result.map_id = map_.Read()->MapOf(frame_.reference);
   result.reference = frame_.reference;
   result.T_c_reference = frame_.T_c_reference;
+  result.features = frame_.features;
+  result.points = frame_.points;
   last_ = std::move(frame_);
 }
 

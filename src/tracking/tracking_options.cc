@@ -1,5 +1,7 @@
 #include "tracking/tracking_options.h"
 
+#include <cmath>
+
 namespace msf {
 
 Status TrackingOptions::Check() const {
@@ -15,6 +17,9 @@ Status TrackingOptions::Check() const {
   if (local_search_rounds < 1)
     return Status::Error("tracking.local_search_rounds must be at least 1");
   if (recently_lost_s < 0) return Status::Error("tracking.recently_lost_s must not be negative");
+  if (!std::isfinite(hindsight.after_s) || hindsight.max_frames < 1) {
+    return Status::Error("tracking.hindsight.after_s must be a number, max_frames at least 1");
+  }
   for (const double width_s : {smoothing.position_s, smoothing.rotation_s}) {
     if (!(width_s >= 0 && width_s <= 1))
       return Status::Error("tracking.smoothing: widths must be from 0 to 1 s");

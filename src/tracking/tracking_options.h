@@ -48,6 +48,21 @@ struct SmoothingOptions {
   }
 };
 
+struct HindsightOptions {
+  double after_s = 2;
+  int max_frames = 10000;
+
+  template <typename Visitor>
+  void Visit(Visitor& visit) {
+    visit(
+        "after_s", after_s,
+        "every frame is matched to the map once more so much later, s, and in the end its pose is "
+        "that which the final map tells; negative: poses stay as tracked");
+    visit("max_frames", max_frames,
+          "of so many of the newest frames (about 13 kB each); older ones stay as tracked");
+  }
+};
+
 struct TrackingOptions {
   int min_initial_points = 200;
   int min_initial_depths = 100;
@@ -67,6 +82,7 @@ struct TrackingOptions {
   bool undo_rolling_shutter = true;
   double velocity_trend = 0.5;
   bool undo_stamp_lag = true;
+  HindsightOptions hindsight;
   SmoothingOptions smoothing;
   int min_local_inliers = 30;
   int min_local_inliers_relocalized = 50;
@@ -119,6 +135,7 @@ struct TrackingOptions {
     visit("undo_stamp_lag", undo_stamp_lag,
           "the trajectory tells where the camera was at the time stamps, not when its images were "
           "exposed (camera.stamp_lag_s)");
+    visit("hindsight", hindsight, "");
     visit("smoothing", smoothing, "");
     visit("min_local_inliers", min_local_inliers, "inliers with which a frame counts as tracked");
     visit("min_local_inliers_relocalized", min_local_inliers_relocalized,

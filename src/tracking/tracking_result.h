@@ -1,9 +1,11 @@
 // What tracking says about one frame.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "feature/frame_features.h"
 #include "feature/landmark.h"
 #include "geometry/rigid3d.h"
 #include "util/stage_timer.h"
@@ -33,8 +35,10 @@ struct TrackingResult {
   std::vector<Landmark> landmarks;  // what the frame shows of the map's trusted part
   KeyFrameId reference;
   Rigid3d T_c_reference;
-  bool started_map = false;                // this frame is the first of a new map
-  std::optional<KeyFrameId> new_keyframe;  // this frame became a keyframe
+  std::shared_ptr<const FrameFeatures> features;  // those that were used, a rolling shutter undone
+  std::vector<MapPointId> points;                 // per feature: the map point it shows, if any
+  bool started_map = false;                       // this frame is the first of a new map
+  std::optional<KeyFrameId> new_keyframe;         // this frame became a keyframe
   StageTimings timings_ms;
 };
 

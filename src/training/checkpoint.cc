@@ -10,7 +10,7 @@ namespace msf {
 
 namespace {
 
-constexpr int kRecordFields = 8;
+constexpr int kRecordFields = 9;
 
 void Insert(NamedTensors& target, const std::string& prefix, const NamedTensors& source) {
   for (const auto& [name, tensor] : source) target[prefix + name] = tensor;
@@ -26,12 +26,13 @@ NamedTensors Extract(const NamedTensors& source, const std::string& prefix) {
 
 torch::Tensor RecordToTensor(const EpochRecord& r) {
   return torch::tensor({static_cast<double>(r.epoch), r.learning_rate, r.box_loss, r.class_loss,
-                        r.distribution_loss, r.imitation_loss, r.map50, r.map50_95});
+                        r.distribution_loss, r.imitation_loss, r.feature_loss, r.map50,
+                        r.map50_95});
 }
 
 EpochRecord RecordFromTensor(const torch::Tensor& row) {
   const auto v = row.accessor<float, 1>();
-  return {static_cast<int>(v[0]), v[1], v[2], v[3], v[4], v[5], v[6], v[7]};
+  return {static_cast<int>(v[0]), v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]};
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ const std::vector<Curve> kLosses = {
     {"box loss", "#1f77b4", &EpochRecord::box_loss},
     {"class loss", "#ff7f0e", &EpochRecord::class_loss},
     {"distribution loss", "#2ca02c", &EpochRecord::distribution_loss},
-    {"imitation", "#9467bd", &EpochRecord::imitation_loss}};
+    {"imitation", "#9467bd", &EpochRecord::imitation_loss},
+    {"features", "#17becf", &EpochRecord::feature_loss}};
 const std::vector<Curve> kPrecisions = {{"mAP50", "#d62728", &EpochRecord::map50},
                                         {"mAP50-95", "#8c564b", &EpochRecord::map50_95}};
 
@@ -56,12 +57,13 @@ void DrawPanel(std::ostream& svg, const std::vector<Curve>& curves,
 Status WriteCurves(const std::filesystem::path& directory,
                    const std::vector<EpochRecord>& records) {
   std::ostringstream csv;
-  csv << "epoch,learning_rate,box_loss,class_loss,distribution_loss,imitation_loss,map50,map50_"
-         "95\n";
+  csv << "epoch,learning_rate,box_loss,class_loss,distribution_loss,imitation_loss,feature_loss,"
+         "map50,"
+         "map50_95\n";
   for (const EpochRecord& r : records) {
     csv << r.epoch << "," << r.learning_rate << "," << r.box_loss << "," << r.class_loss << ","
-        << r.distribution_loss << "," << r.imitation_loss << "," << r.map50 << "," << r.map50_95
-        << "\n";
+        << r.distribution_loss << "," << r.imitation_loss << "," << r.feature_loss << "," << r.map50
+        << "," << r.map50_95 << "\n";
   }
   MSF_RETURN_IF_ERROR(WriteFileAtomically(directory / "curves.csv", csv.str()));
   if (records.empty()) return Status::Ok();

@@ -146,6 +146,27 @@ std::vector<double> LayerDistillation::Errors(const torch::Tensor& images, bool 
   return errors;
 }
 
+torch::Tensor FeatureDistance(const ModelGraph& student,
+                              const std::vector<torch::Tensor>& student_values,
+                              const ModelGraph& teacher,
+                              const std::vector<torch::Tensor>& teacher_values,
+                              const torch::Tensor& pictures) {
+  constexpr int kLeastScale = 8;  // earlier layers have most of the pixels and little to say
+  if (pictures.numel() == 0) return torch::zeros({});
+  std::vector<torch::Tensor> errors;
+  const size_t count = std::min(student.layers.size(), teacher.layers.size());
+  for (size_t i = 0; i < count && SameKind(student.layers[i].type, teacher.layers[i].type); ++i) {
+    const std::string& type = student.layers[i].type;
+    const int own = student.LayerOutput(static_cast<int>(i)),
+              other = teacher.LayerOutput(static_cast<int>(i));
+    const bool only_passes_on = type == "Upsample" || type == "Concat" || type == "Detect";
+    if (only_passes_on || student.nodes[own].scale < kLeastScale) continue;
+    errors.push_back(RelativeError(student_values[own].index_select(0, pictures),
+                                   teacher_values[other].index_select(0, pictures)));
+  }
+  return errors.empty() ? torch::zeros({}) : torch::stack(errors).mean();
+}
+
 torch::Tensor ClassDistance(const HeadOutputs& student, const HeadOutputs& teacher,
                             const torch::Tensor& angles) {
   constexpr double kNothing = -10.0;

@@ -41,6 +41,15 @@ class LayerDistillation {
   std::vector<int> layers_;
 };
 
+// Distance of what a student's layers give to what its teacher's give for the same pictures, end to
+// end: squared error over the teacher's variance per channel, mean over the layers at an eighth of
+// the picture's size and smaller. `pictures`: the indices in the batch that count.
+torch::Tensor FeatureDistance(const ModelGraph& student,
+                              const std::vector<torch::Tensor>& student_values,
+                              const ModelGraph& teacher,
+                              const std::vector<torch::Tensor>& teacher_values,
+                              const torch::Tensor& pictures);
+
 // Distance of a student's class logits to its teacher's: squared error over variance, weighted by
 // the teacher's scores, mean over the scales. Keeps what the teacher knows of classes that the
 // training images hardly show. `angles` ([batch], radians): by how much the student's pictures were

@@ -55,6 +55,8 @@ Status TrainOptions::Check() const {
         "train.distill_epochs, validation_images and patience must not be negative, threads at "
         "least 1");
   }
+  if (label_weight < 0 || imitation < 0 || feature_imitation < 0)
+    return Status::Error("train: weights of losses must not be negative");
   if (freeze_layers < 0) return Status::Error("train.freeze_layers must not be negative");
   MSF_RETURN_IF_ERROR(optimizer.Check());
   return augmentation.Check();
@@ -172,7 +174,7 @@ EpochSampler Trainer::Sampler(int epoch, double mosaic) const {
   return {images_, sampling, static_cast<uint64_t>(options_.seed), epoch};
 }
 
-HeadOutputs Trainer::ForwardForTraining(const Batch& batch, torch::Tensor& distance) {
+HeadOutputs Trainer::ForwardForTraining(const Batch& batch, Distances& distances) {
   const MixedPrecision mixed(options_.bfloat16);
   const int frozen =
       options_.freeze_layers > 0 ? network_.graph().layers[options_.freeze_layers - 1].end : 1;
@@ -185,41 +187,56 @@ HeadOutputs Trainer::ForwardForTraining(const Batch& batch, torch::Tensor& dista
   }
   network_.set_training(!options_.freeze_norms);
   network_.RunNodes(frozen, static_cast<int>(values.size()), values);
-  HeadOutputs heads = network_.HeadsOf(values);
-  distance = torch::zeros({});
-  if (teacher_ && options_.imitation > 0.0) distance = Imitation(heads, batch);
-  return heads;
+  const bool imitates = options_.imitation > 0.0 || options_.feature_imitation > 0.0;
+  if (teacher_ && imitates) distances = Imitate(values, batch);
+  return network_.HeadsOf(values);
 }
 
-torch::Tensor Trainer::Imitation(const HeadOutputs& heads, const Batch& batch) const {
+Trainer::Distances Trainer::Imitate(const std::vector<torch::Tensor>& values,
+                                    const Batch& batch) const {
   const torch::Tensor turned = batch.angles.abs() > kUpright;
   const torch::Tensor counted =
       options_.imitate_turned ? torch::arange(turned.size(0)) : torch::nonzero(~turned).flatten();
-  if (counted.numel() == 0) return torch::zeros({});
+  if (counted.numel() == 0) return {};
   // The teacher has never seen rotated pictures: it is shown them upright.
   const torch::Tensor angles = (batch.angles * turned).index_select(0, counted);
   const torch::Tensor images = batch.images.index_select(0, counted);
-  const HeadOutputs wanted = [&] {
+  std::vector<torch::Tensor> wanted(teacher_->graph().nodes.size());
+  {
     const torch::NoGradGuard no_grad;
-    return teacher_->Forward(options_.imitate_turned ? TurnMaps(images, angles, kGrey) : images);
-  }();
-  HeadOutputs given;
-  for (const torch::Tensor& map : heads.classes)
-    given.classes.push_back(map.index_select(0, counted));
-  return ClassDistance(given, wanted, angles);
+    wanted[0] = (options_.imitate_turned ? TurnMaps(images, angles, kGrey) : images)
+                    .contiguous(torch::MemoryFormat::ChannelsLast);
+    teacher_->RunNodes(1, static_cast<int>(wanted.size()), wanted);
+  }
+  std::vector<torch::Tensor> given(values.size());
+  const ModelGraph& graph = network_.graph();
+  for (const int node : graph.class_heads) given[node] = values[node].index_select(0, counted);
+  Distances distances;
+  distances.classes = ClassDistance(network_.HeadsOf(given), teacher_->HeadsOf(wanted), angles);
+  if (options_.feature_imitation <= 0.0) return distances;
+  for (size_t i = 0; i < graph.layers.size(); ++i) {
+    const int node = graph.LayerOutput(static_cast<int>(i));
+    if (graph.layers[i].type != "Detect") given[node] = values[node].index_select(0, counted);
+  }
+  const torch::Tensor upright = torch::nonzero(~turned.index_select(0, counted)).flatten();
+  distances.features = FeatureDistance(graph, given, teacher_->graph(), wanted, upright);
+  return distances;
 }
 
 double Trainer::TrainStep(const Batch& batch, EpochRecord& record) {
-  torch::Tensor distance;
-  const HeadOutputs heads = ForwardForTraining(batch, distance);
+  Distances distances;
+  const HeadOutputs heads = ForwardForTraining(batch, distances);
   const LossTerms terms = DetectionLoss(DecodeHeads(heads, options_.side), batch.labels);
   const auto images = static_cast<double>(options_.batch);
-  const torch::Tensor total = images * (terms.total + options_.imitation * distance);
+  const torch::Tensor total =
+      images * (options_.label_weight * terms.total + options_.imitation * distances.classes +
+                options_.feature_imitation * distances.features);
   total.backward();
   record.box_loss += terms.box;
   record.class_loss += terms.classes;
   record.distribution_loss += terms.distribution;
-  record.imitation_loss += distance.item<double>();
+  record.imitation_loss += distances.classes.item<double>();
+  record.feature_loss += distances.features.item<double>();
   return total.item<double>() / images;
 }
 
@@ -237,8 +254,8 @@ void Trainer::TrainEpoch(int epoch) {
     average_->Update(network_);
     on_progress_({"train", epoch, options_.epochs, step, steps, loss});
   }
-  for (double* sum :
-       {&record.box_loss, &record.class_loss, &record.distribution_loss, &record.imitation_loss})
+  for (double* sum : {&record.box_loss, &record.class_loss, &record.distribution_loss,
+                      &record.imitation_loss, &record.feature_loss})
     *sum /= steps;
   ValidateEpoch(record);
   records_.push_back(record);

@@ -30,7 +30,9 @@ struct TrainOptions {
   int distill_epochs = 1;
   double distill_rate = 1e-3;
   double new_rate = 1.0;
+  double label_weight = 1.0;
   double imitation = 2.0;
+  double feature_imitation = 0.0;
   bool imitate_turned = false;
   double average_decay = 0.998;
   double average_ramp = 200.0;
@@ -61,9 +63,12 @@ struct TrainOptions {
     visit("distill_rate", distill_rate, "largest learning rate (AdamW) of those passes");
     visit("new_rate", new_rate,
           "new layers learn this many times as fast as those with starting weights");
+    visit("label_weight", label_weight, "weight of the loss on the labels");
     visit(
         "imitation", imitation,
         "weight of the distance to the class logits of the network that gave the starting weights");
+    visit("feature_imitation", feature_imitation,
+          "weight of the distance to that network's layers on upright pictures");
     visit("imitate_turned", imitate_turned,
           "that distance counts on rotated pictures, too, which that network sees upright");
     visit("average_decay", average_decay,
@@ -87,6 +92,7 @@ struct EpochRecord {
   double class_loss = 0.0;
   double distribution_loss = 0.0;
   double imitation_loss = 0.0;
+  double feature_loss = 0.0;
   double map50 = 0.0;
   double map50_95 = 0.0;
 };
@@ -134,10 +140,15 @@ class Trainer {
   void Distill();
   void TrainEpoch(int epoch);
   EpochSampler Sampler(int epoch, double mosaic) const;
-  // Outputs for a batch, gradients recorded, and the distance to the teacher's (0 without one).
-  HeadOutputs ForwardForTraining(const Batch& batch, torch::Tensor& distance);
-  // How far the class logits are from the teacher's, on the pictures that count for it.
-  torch::Tensor Imitation(const HeadOutputs& heads, const Batch& batch) const;
+  // How far a batch's outputs are from the teacher's; 0 without one.
+  struct Distances {
+    torch::Tensor classes = torch::zeros({});   // of the class logits
+    torch::Tensor features = torch::zeros({});  // of the layers
+  };
+  // Outputs for a batch, gradients recorded.
+  HeadOutputs ForwardForTraining(const Batch& batch, Distances& distances);
+  // The distances on the pictures that count for it. `values`: of the network's nodes.
+  Distances Imitate(const std::vector<torch::Tensor>& values, const Batch& batch) const;
   std::set<std::string> TrainedParameters() const;
   // The blocks without starting weights: new convolutions with their norms.
   std::set<std::string> NewParameters() const;

@@ -1,0 +1,86 @@
+#include "tracking/hindsight.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace msf {
+
+std::vector<TrackedFrame> FrameDelay::TakeDue() {
+  std::vector<TrackedFrame> due;
+  while (!frames_.empty() && frames_.back().time_s - frames_.front().time_s >= delay_s_) {
+    due.push_back(std::move(frames_.front()));
+    frames_.pop_front();
+  }
+  return due;
+}
+
+std::vector<TrackedFrame> FrameDelay::TakeAll() {
+  std::vector<TrackedFrame> all(std::make_move_iterator(frames_.begin()),
+                                std::make_move_iterator(frames_.end()));
+  frames_.clear();
+  return all;
+}
+
+void Hindsight::Match(const TrackedFrame& tracked) {
+  const TrackingOptions& options = context_.options;
+  Frame frame;
+  {
+    const SharedMap::Reader map = map_.Read();
+    if (!map->Knows(tracked.reference)) return;
+    frame.T_cw = tracked.T_c_reference * map->PoseOf(tracked.reference);
+    for (const MapPointId point : tracked.points) {
+      const MapPointId now = map->Resolve(point);
+      if (map->FindPoint(now)) frame.points.push_back(now);
+    }
+    local_map_.Update(*map, frame, options.max_local_keyframes, options.max_neighbours);
+  }
+  const FrameFeatures& features = *tracked.features;
+  const LocalMatches local = MatchLocalPoints(context_, local_map_.points(), features, frame.T_cw,
+                                              {}, options.local_radius_factor_refined);
+  Entry entry{tracked.id, {}};
+  entry.sightings.reserve(local.matches.size());
+  for (const PointMatch& match : local.matches) {
+    const int i = match.feature;
+    entry.sightings.push_back({.point = static_cast<int32_t>(match.point.value()),
+                               .u_px = features.uv_px[i].x(),
+                               .v_px = features.uv_px[i].y(),
+                               .depth_m = features.depth_m[i],
+                               .weight = static_cast<float>(match.weight),
+                               .level = features.level[i]});
+  }
+  entries_.push_back(std::move(entry));
+  if (entries_.size() > static_cast<size_t>(options.hindsight.max_frames)) entries_.pop_front();
+}
+
+std::vector<PoseObservation> Hindsight::Observe(const Entry& entry, const Map& map) const {
+  std::vector<PoseObservation> observations;
+  observations.reserve(entry.sightings.size());
+  for (const Sighting& sighting : entry.sightings) {
+    const MapPoint* point = map.FindPoint(map.Resolve(MapPointId(sighting.point)));
+    if (!point) continue;
+    const double weight = std::min(sighting.weight, point->static_weight);
+    PoseObservation observation{ObserveFeature({.uv_px = {sighting.u_px, sighting.v_px},
+                                                .depth_m = sighting.depth_m,
+                                                .level = sighting.level},
+                                               context_.camera, context_.levels, context_.noise,
+                                               weight)};
+    observation.p_w = point->p_w;
+    observations.push_back(observation);
+  }
+  return observations;
+}
+
+void Hindsight::Revise(const Map& map, std::vector<ResolvedFrame>& frames) const {
+  auto frame = frames.begin();
+  for (const Entry& entry : entries_) {
+    while (frame != frames.end() && frame->frame_id < entry.id) ++frame;
+    if (frame == frames.end()) return;
+    if (frame->frame_id != entry.id || !frame->T_wc) continue;
+    const PoseEstimate estimate = OptimizePose(context_.camera, frame->T_wc->Inverse(),
+                                               Observe(entry, map), context_.options.pose);
+    if (estimate.num_inliers >= context_.options.min_local_inliers)
+      frame->T_wc = estimate.T_cw.Inverse();
+  }
+}
+
+}  // namespace msf

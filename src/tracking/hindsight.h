@@ -1,0 +1,77 @@
+// Where the frames were, once more: the map of the end knows its points better than that of the
+// moment did, and points that came after a frame.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "map/shared_map.h"
+#include "tracking/local_map.h"
+#include "tracking/pose_tracking.h"
+#include "tracking/trajectory_recorder.h"
+
+namespace msf {
+
+// A frame as tracking left it.
+struct TrackedFrame {
+  FrameId id;
+  double time_s = 0;
+  std::shared_ptr<const FrameFeatures> features;  // a rolling shutter undone
+  std::vector<MapPointId> points;                 // per feature; invalid = none
+  KeyFrameId reference;
+  Rigid3d T_c_reference;
+};
+
+// Holds frames back until they are so much older than the newest one that mapping has made points
+// of what they were the first to see.
+class FrameDelay {
+ public:
+  explicit FrameDelay(double delay_s) : delay_s_(delay_s) {}
+  // Frames in the order of time.
+  void Add(TrackedFrame frame) { frames_.push_back(std::move(frame)); }
+  // The frames that are due, oldest first.
+  std::vector<TrackedFrame> TakeDue();
+  std::vector<TrackedFrame> TakeAll();
+
+ private:
+  double delay_s_;
+  std::deque<TrackedFrame> frames_;
+};
+
+// Single-threaded; reads the map, which others may change meanwhile.
+class Hindsight {
+ public:
+  Hindsight(const TrackingContext& context, const SharedMap& map) : context_(context), map_(map) {}
+
+  // Finds the points of the map in a frame, among those around its place, and remembers where they
+  // are; the frame's features are not kept. Frames come in the order of their ids. Of the newest
+  // HindsightOptions::max_frames only.
+  void Match(const TrackedFrame& frame);
+
+  // Gives the frames the poses that their sightings of points tell with the points where `map` has
+  // them now. A frame keeps its pose when too few of them are left or agree.
+  void Revise(const Map& map, std::vector<ResolvedFrame>& frames) const;
+
+ private:
+  // Of a point, packed: a minute of video has a million of them.
+  struct Sighting {
+    int32_t point = 0;
+    float u_px = 0, v_px = 0;
+    float depth_m = 0;
+    float weight = 0;  // static probability of feature and point at that time
+    uint8_t level = 0;
+  };
+  struct Entry {
+    FrameId id;
+    std::vector<Sighting> sightings;
+  };
+  std::vector<PoseObservation> Observe(const Entry& entry, const Map& map) const;
+
+  TrackingContext context_;
+  const SharedMap& map_;
+  LocalMap local_map_;
+  std::deque<Entry> entries_;  // ascending by id
+};
+
+}  // namespace msf

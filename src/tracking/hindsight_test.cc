@@ -1,0 +1,126 @@
+#include "tracking/hindsight.h"
+
+#include <gtest/gtest.h>
+
+#include "tracking/test_frame.h"
+
+namespace msf {
+namespace {
+
+constexpr double kMapsOwnError = 0.008;  // of a pose in the test map, m and rad
+
+TEST(FrameDelayTest, FramesAreDueWhenNewerOnesHaveCome) {
+  FrameDelay delay(1);
+  for (int i = 0; i < 4; ++i) delay.Add({.id = FrameId(i), .time_s = 0.5 * i});
+  const std::vector<TrackedFrame> due = delay.TakeDue();
+  ASSERT_EQ(due.size(), 2u);
+  EXPECT_EQ(due[0].id, FrameId(0));
+  EXPECT_EQ(due[1].id, FrameId(1));
+  EXPECT_TRUE(delay.TakeDue().empty());
+  EXPECT_EQ(delay.TakeAll().size(), 2u);
+  EXPECT_TRUE(delay.TakeAll().empty());
+}
+
+class HindsightTest : public testing::Test {
+ protected:
+  // What tracking left of the frame that `at_` looks at: a pose that is off, and the points that
+  // the newest keyframe shows.
+  TrackedFrame Tracked(int id, const Rigid3d& error) {
+    TrackedFrame frame{.id = FrameId(id),
+                       .features = at_.view.features,
+                       .points = std::vector<MapPointId>(at_.view.features->size()),
+                       .reference = at_.keyframes.back()};
+    for (const PointMatch& match :
+         MatchLastFrame(at_.context, at_.map, at_.LastFrame(), *at_.view.features, at_.T_cw_true))
+      frame.points[match.feature] = match.point;
+    frame.T_c_reference = error * at_.T_cw_true * at_.map.PoseOf(at_.keyframes.back()).Inverse();
+    return frame;
+  }
+  static ResolvedFrame Resolved(const TrackedFrame& frame, const Map& map) {
+    return {.frame_id = frame.id,
+            .state = TrackingState::kTracking,
+            .T_wc = (frame.T_c_reference * map.PoseOf(frame.reference)).Inverse(),
+            .map_id = map.active_map()};
+  }
+  static Rigid3d Shift(double x_m) {
+    return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x_m, 0, 0)};
+  }
+  Hindsight Make(const SharedMap& map) const {
+    return {{*at_.world.camera(), at_.world.levels(), options_, at_.noise}, map};
+  }
+
+  TrackedWorld at_;
+  TrackingOptions options_;
+};
+
+TEST_F(HindsightTest, APoseThatIsOffIsPutRight) {
+  const TrackedFrame other = Tracked(2, Shift(0.01)), frame = Tracked(3, Shift(0.03));
+  SharedMap map(std::move(at_.map));
+  Hindsight hindsight = Make(map);
+  hindsight.Match(frame);
+  std::vector<ResolvedFrame> frames = {Resolved(other, *map.Read()), Resolved(frame, *map.Read())};
+  hindsight.Revise(*map.Read(), frames);
+  EXPECT_LT(at_.PoseError(frames[1].T_wc->Inverse()), kMapsOwnError);
+  EXPECT_NEAR(at_.PoseError(frames[0].T_wc->Inverse()), 0.01, 1e-6) << "it was not matched";
+}
+
+TEST_F(HindsightTest, ThePoseFollowsThePointsOfTheFinalMap) {
+  const TrackedFrame frame = Tracked(3, {});
+  SharedMap map(std::move(at_.map));
+  Hindsight hindsight = Make(map);
+  hindsight.Match(frame);
+  std::vector<ResolvedFrame> frames = {Resolved(frame, *map.Read())};
+  {
+    SharedMap::Writer writer = map.Write();
+    for (const MapPointId id : writer->PointIds(writer->active_map()))
+      writer->MovePoint(id, Shift(0.05));
+  }
+  hindsight.Revise(*map.Read(), frames);
+  const Rigid3d T_cw_expected = at_.T_cw_true * Shift(-0.05);
+  EXPECT_LT((frames[0].T_wc->Inverse() * T_cw_expected.Inverse()).Log().norm(), kMapsOwnError);
+}
+
+TEST_F(HindsightTest, PointsThatCameAfterTheFrameAreFound) {
+  TrackedFrame frame = Tracked(3, Shift(0.03));
+  // Few points were known at the time, too few to tell a pose.
+  int known = 0;
+  for (MapPointId& point : frame.points) {
+    if (point.valid() && ++known > options_.min_local_inliers / 2) point = MapPointId();
+  }
+  SharedMap map(std::move(at_.map));
+  Hindsight hindsight = Make(map);
+  hindsight.Match(frame);
+  std::vector<ResolvedFrame> frames = {Resolved(frame, *map.Read())};
+  hindsight.Revise(*map.Read(), frames);
+  EXPECT_LT(at_.PoseError(frames[0].T_wc->Inverse()), kMapsOwnError);
+}
+
+TEST_F(HindsightTest, WithTooFewPointsLeftTheFrameStaysAsItWasTracked) {
+  const TrackedFrame frame = Tracked(3, Shift(0.03));
+  SharedMap map(std::move(at_.map));
+  Hindsight hindsight = Make(map);
+  hindsight.Match(frame);
+  std::vector<ResolvedFrame> frames = {Resolved(frame, *map.Read())};
+  {
+    SharedMap::Writer writer = map.Write();
+    for (const MapPointId id : writer->PointIds(writer->active_map())) writer->RemovePoint(id);
+  }
+  hindsight.Revise(*map.Read(), frames);
+  EXPECT_NEAR(at_.PoseError(frames[0].T_wc->Inverse()), 0.03, 1e-6);
+}
+
+TEST_F(HindsightTest, OnlyTheNewestFramesAreRevised) {
+  options_.hindsight.max_frames = 1;
+  const TrackedFrame older = Tracked(3, Shift(0.03)), newer = Tracked(4, Shift(0.03));
+  SharedMap map(std::move(at_.map));
+  Hindsight hindsight = Make(map);
+  hindsight.Match(older);
+  hindsight.Match(newer);
+  std::vector<ResolvedFrame> frames = {Resolved(older, *map.Read()), Resolved(newer, *map.Read())};
+  hindsight.Revise(*map.Read(), frames);
+  EXPECT_NEAR(at_.PoseError(frames[0].T_wc->Inverse()), 0.03, 1e-6);
+  EXPECT_LT(at_.PoseError(frames[1].T_wc->Inverse()), kMapsOwnError);
+}
+
+}  // namespace
+}  // namespace msf
