@@ -87,8 +87,8 @@ TEST_F(BackgroundTest, OnlyViewsOfSomeAgeCount) {
   Remember(0, Wall());
   EXPECT_EQ(Compare(0.5, Wall()).wall, BlockVerdict::kUnknown);
   EXPECT_EQ(Compare(0.6, Wall()).wall, BlockVerdict::kConfirmed);
-  Remember(3.5, Wall());  // the first one is too old now
-  EXPECT_EQ(Compare(3.8, Wall()).wall, BlockVerdict::kUnknown);
+  Remember(8.5, Wall());  // the first one is too old now
+  EXPECT_EQ(Compare(8.8, Wall()).wall, BlockVerdict::kUnknown);
 }
 
 TEST_F(BackgroundTest, ViewsAreKeptNowAndThen) {

@@ -48,8 +48,8 @@ struct MotionTestOptions {
 struct BackgroundOptions {
   double keep_every_s = 0.15;
   double youngest_s = 0.6;
-  double oldest_s = 3;
-  int num_views = 3;
+  double oldest_s = 8;
+  int num_views = 4;
   double tolerance_m = 0.025;
   double tolerance_per_m2 = 0.01;
   double max_turn_px = 6;

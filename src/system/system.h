@@ -26,8 +26,8 @@ struct ColoredPoint {
 
 // What remains when the last frame has been seen: everything in the coordinates of the final map.
 struct Reconstruction {
-  // One per frame given to Track(), in order, with the pose at its time stamp, smoothed over
-  // TrackingOptions::smoothing.
+  // One per frame given to Track(), in order, with the pose at its time stamp: that which the final
+  // map tells (TrackingOptions::hindsight), smoothed over TrackingOptions::smoothing.
   std::vector<ResolvedFrame> frames;
   // Of all maps, ascending by id, with the pose that their images show (Camera::stamp_lag_s).
   std::vector<KeyFramePose> keyframes;

@@ -52,12 +52,13 @@ void Hindsight::Match(const TrackedFrame& tracked) {
   if (entries_.size() > static_cast<size_t>(options.hindsight.max_frames)) entries_.pop_front();
 }
 
-std::vector<PoseObservation> Hindsight::Observe(const Entry& entry, const Map& map) const {
+std::vector<PoseObservation> Hindsight::Observe(const Entry& entry, const Map& map,
+                                                MapId id) const {
   std::vector<PoseObservation> observations;
   observations.reserve(entry.sightings.size());
   for (const Sighting& sighting : entry.sightings) {
     const MapPoint* point = map.FindPoint(map.Resolve(MapPointId(sighting.point)));
-    if (!point) continue;
+    if (!point || point->map_id != id) continue;
     const double weight = std::min(sighting.weight, point->static_weight);
     PoseObservation observation{ObserveFeature({.uv_px = {sighting.u_px, sighting.v_px},
                                                 .depth_m = sighting.depth_m,
@@ -76,8 +77,9 @@ void Hindsight::Revise(const Map& map, std::vector<ResolvedFrame>& frames) const
     while (frame != frames.end() && frame->frame_id < entry.id) ++frame;
     if (frame == frames.end()) return;
     if (frame->frame_id != entry.id || !frame->T_wc) continue;
-    const PoseEstimate estimate = OptimizePose(context_.camera, frame->T_wc->Inverse(),
-                                               Observe(entry, map), context_.options.pose);
+    const PoseEstimate estimate =
+        OptimizePose(context_.camera, frame->T_wc->Inverse(), Observe(entry, map, frame->map_id),
+                     context_.options.pose);
     if (estimate.num_inliers >= context_.options.min_local_inliers)
       frame->T_wc = estimate.T_cw.Inverse();
   }

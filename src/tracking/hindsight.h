@@ -66,7 +66,8 @@ class Hindsight {
     FrameId id;
     std::vector<Sighting> sightings;
   };
-  std::vector<PoseObservation> Observe(const Entry& entry, const Map& map) const;
+  // The sightings of points that are still in the map `id`, where they are now.
+  std::vector<PoseObservation> Observe(const Entry& entry, const Map& map, MapId id) const;
 
   TrackingContext context_;
   const SharedMap& map_;
