@@ -178,5 +178,33 @@ TEST(MsfInitializationTest, BlocksReproduceTheTeacher) {
   EXPECT_NEAR(after, errors[0], 0.1);
 }
 
+std::vector<torch::Tensor> ValuesOf(const Network& network, const torch::Tensor& images) {
+  std::vector<torch::Tensor> values(network.graph().nodes.size());
+  values[0] = images;
+  network.RunNodes(1, static_cast<int>(values.size()), values);
+  return values;
+}
+
+TEST(FeatureDistanceTest, CountsHowFarTheLayersOfTheChosenPicturesAre) {
+  Network teacher(BuildModelGraph(SmallConfig("none")), 1);
+  Enliven(teacher);
+  Network student(BuildModelGraph(SmallConfig("none")), 1);
+  ASSERT_TRUE(student.Load(teacher.State()).ok());
+  torch::manual_seed(5);
+  const torch::Tensor images = torch::rand({2, 3, 64, 64});
+  const std::vector<torch::Tensor> wanted = ValuesOf(teacher, images);
+  // The second picture is another one for the student.
+  torch::Tensor changed = images.clone();
+  changed[1] = torch::rand({3, 64, 64});
+  const std::vector<torch::Tensor> given = ValuesOf(student, changed);
+  const auto distance = [&](const torch::Tensor& pictures) {
+    return FeatureDistance(student.graph(), given, teacher.graph(), wanted, pictures)
+        .item<double>();
+  };
+  EXPECT_NEAR(distance(torch::tensor({0})), 0, 1e-6);
+  EXPECT_GT(distance(torch::tensor({1})), 0.1);
+  EXPECT_EQ(distance(torch::empty({0}, torch::kLong)), 0);
+}
+
 }  // namespace
 }  // namespace msf
