@@ -160,7 +160,8 @@ torch::Tensor FeatureDistance(const ModelGraph& student,
     const int own = student.LayerOutput(static_cast<int>(i)),
               other = teacher.LayerOutput(static_cast<int>(i));
     const bool only_passes_on = type == "Upsample" || type == "Concat" || type == "Detect";
-    if (only_passes_on || student.nodes[own].scale < kLeastScale) continue;
+    const bool same_width = student.nodes[own].channels == teacher.nodes[other].channels;
+    if (only_passes_on || !same_width || student.nodes[own].scale < kLeastScale) continue;
     errors.push_back(RelativeError(student_values[own].index_select(0, pictures),
                                    teacher_values[other].index_select(0, pictures)));
   }

@@ -43,7 +43,8 @@ class LayerDistillation {
 
 // Distance of what a student's layers give to what its teacher's give for the same pictures, end to
 // end: squared error over the teacher's variance per channel, mean over the layers at an eighth of
-// the picture's size and smaller. `pictures`: the indices in the batch that count.
+// the picture's size and smaller that are as wide in both. `pictures`: the indices in the batch
+// that count.
 torch::Tensor FeatureDistance(const ModelGraph& student,
                               const std::vector<torch::Tensor>& student_values,
                               const ModelGraph& teacher,
