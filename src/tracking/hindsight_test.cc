@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tracking/test_frame.h"
 
 namespace msf {
@@ -19,6 +21,15 @@ TEST(FrameDelayTest, FramesAreDueWhenNewerOnesHaveCome) {
   EXPECT_TRUE(delay.TakeDue().empty());
   EXPECT_EQ(delay.TakeAll().size(), 2u);
   EXPECT_TRUE(delay.TakeAll().empty());
+}
+
+TEST(HindsightOptionsTest, NonsenseIsRefused) {
+  TrackingOptions options;
+  EXPECT_TRUE(options.Check().ok());
+  options.hindsight.max_frames = 0;
+  EXPECT_NE(options.Check().message().find("hindsight"), std::string::npos);
+  options.hindsight = {.after_s = std::nan("")};
+  EXPECT_NE(options.Check().message().find("hindsight"), std::string::npos);
 }
 
 class HindsightTest : public testing::Test {
