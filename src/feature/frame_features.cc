@@ -52,7 +52,7 @@ void FrameFeatures::BuildGrid(const Camera& camera) {
     cell_begin_[cell] += cell_begin_[cell - 1];
   cell_points_.resize(size());
   std::vector<int32_t> next(cell_begin_.begin(), cell_begin_.end() - 1);
-  for (int i = 0; i < size(); ++i) cell_points_[next[cell_of[i]]++] = i;
+  for (int i = 0; i < size(); ++i) cell_points_[next[cell_of[i]]++] = {uv_px[i], level[i], i};
 }
 
 void FrameFeatures::FindInArea(const Eigen::Vector2d& centre_px, double radius_px, int min_level,
@@ -73,11 +73,12 @@ void FrameFeatures::FindInArea(const Eigen::Vector2d& centre_px, double radius_p
     const int32_t begin = cell_begin_[row * kGridColumns + first_column];
     const int32_t end = cell_begin_[row * kGridColumns + last_column + 1];
     for (int32_t k = begin; k < end; ++k) {
-      const int i = cell_points_[k];
-      if (level[i] < min_level || level[i] > max_level) continue;
-      if (std::abs(uv_px[i].x() - centre.x()) < radius &&
-          std::abs(uv_px[i].y() - centre.y()) < radius)
-        found.push_back(i);
+      const CellPoint& point = cell_points_[k];
+      // One branch for all: most points of these cells fail one of the tests, each as likely.
+      const bool inside = (point.level >= min_level) & (point.level <= max_level) &
+                          (std::abs(point.uv_px.x() - centre.x()) < radius) &
+                          (std::abs(point.uv_px.y() - centre.y()) < radius);
+      if (inside) found.push_back(point.index);
     }
   }
 }

@@ -42,9 +42,15 @@ struct FrameFeatures {
   static constexpr int kGridRows = 48;
   Eigen::Vector2f grid_origin_px_ = Eigen::Vector2f::Zero();
   Eigen::Vector2f cells_per_px_ = Eigen::Vector2f::Zero();
+  // What a search asks of a point, side by side in memory.
+  struct CellPoint {
+    Eigen::Vector2f uv_px;
+    int32_t level;
+    int32_t index;
+  };
   std::vector<int32_t>
       cell_begin_;  // kGridColumns * kGridRows + 1 offsets into cell_points_, row by row
-  std::vector<int32_t> cell_points_;
+  std::vector<CellPoint> cell_points_;
 };
 
 }  // namespace msf

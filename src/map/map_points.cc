@@ -64,15 +64,27 @@ int Map::NumPoints(MapId map) const {
 }
 
 std::vector<MapPointId> Map::PointsSeenBy(std::span<const KeyFrameId> keyframes) const {
-  std::vector<MapPointId> seen;
+  // Neighbouring keyframes see the same points, tens of thousands in all: marking them takes a
+  // tenth of the time that sorting takes.
+  std::vector<uint8_t> is_seen(points_.size(), 0);
+  size_t first = points_.size(), last = 0, count = 0;
   for (const KeyFrameId id : keyframes) {
     const KeyFrame* keyframe = FindKeyFrame(id);
     if (!keyframe) continue;
-    std::copy_if(keyframe->points.begin(), keyframe->points.end(), std::back_inserter(seen),
-                 [](MapPointId point) { return point.valid(); });
+    for (const MapPointId point : keyframe->points) {
+      if (!point.valid()) continue;
+      const auto i = static_cast<size_t>(point.value());
+      count += is_seen[i] == 0;
+      is_seen[i] = 1;
+      first = std::min(first, i);
+      last = std::max(last, i);
+    }
   }
-  std::sort(seen.begin(), seen.end());
-  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  std::vector<MapPointId> seen;
+  seen.reserve(count);
+  for (size_t i = first; i <= last && i < is_seen.size(); ++i) {
+    if (is_seen[i] != 0) seen.emplace_back(static_cast<int64_t>(i));
+  }
   return seen;
 }
 

@@ -50,14 +50,7 @@ std::vector<KeyFrameId> LocalMap::SelectKeyFrames(const Map& map, const Frame& f
 }
 
 void LocalMap::CopyPoints(const Map& map) {
-  std::vector<MapPointId> ids;
-  for (const KeyFrameId keyframe : keyframes_) {
-    for (const MapPointId id : map.FindKeyFrame(keyframe)->points) {
-      if (id.valid()) ids.push_back(id);
-    }
-  }
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  const std::vector<MapPointId> ids = map.PointsSeenBy(keyframes_);
   points_.clear();
   points_.reserve(ids.size());
   for (const MapPointId id : ids) points_.emplace_back(*map.FindPoint(id));
