@@ -1,7 +1,6 @@
 #include "tracking/local_map.h"
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 namespace msf {
@@ -20,13 +19,20 @@ void LocalMap::Update(const Map& map, const Frame& frame, int max_keyframes, int
 
 std::vector<KeyFrameId> LocalMap::SelectKeyFrames(const Map& map, const Frame& frame,
                                                   int max_keyframes, int max_neighbours) {
-  std::map<KeyFrameId, int> votes;
+  std::vector<int> votes;  // by keyframe id
   for (const MapPointId id : frame.points) {
     const MapPoint* point = map.FindPoint(id);
     if (!point) continue;
-    for (const Observation& observation : point->observations) ++votes[observation.keyframe];
+    for (const Observation& observation : point->observations) {
+      const auto keyframe = static_cast<size_t>(observation.keyframe.value());
+      if (keyframe >= votes.size()) votes.resize(keyframe + 1, 0);
+      ++votes[keyframe];
+    }
   }
-  std::vector<std::pair<KeyFrameId, int>> ranked(votes.begin(), votes.end());
+  std::vector<std::pair<KeyFrameId, int>> ranked;
+  for (size_t i = 0; i < votes.size(); ++i) {
+    if (votes[i] > 0) ranked.emplace_back(KeyFrameId(static_cast<int64_t>(i)), votes[i]);
+  }
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
   best_keyframe_ = ranked.empty() ? KeyFrameId() : ranked.front().first;
