@@ -262,6 +262,12 @@ RunResults RunSession::Run(Clock::time_point start) {
     results.warnings.push_back(fmt::format(
         "the overlay lacks {} frames that could not be drawn in time", overlay_->num_left_out()));
   }
+  if (reconstruction.num_without_hindsight > 0) {
+    results.warnings.push_back(
+        fmt::format("the first {} poses are as tracked, not those that the final map tells: there "
+                    "are more frames than tracking.hindsight.max_frames",
+                    reconstruction.num_without_hindsight));
+  }
   results.wall_time_s = SecondsSince(start);
   results.time_to_first_pose_s = recording.time_to_first_pose_s;
   results.usage = ReadProcessUsage();

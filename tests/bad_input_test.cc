@@ -110,6 +110,11 @@ TEST_F(BadInputTest, SomeBlackFramesAreLostOnly) {
   EXPECT_EQ(Report().at("frames").at("with_pose"), kFrames - 2);
 }
 
+TEST_F(BadInputTest, FramesTooManyForHindsightAreToldOf) {
+  EXPECT_EQ(Run("--set tracking.hindsight.max_frames=3").exit_code, 0);
+  EXPECT_THAT(Report().at("warnings").dump(), HasSubstr("the first 5 poses are as tracked"));
+}
+
 TEST_F(BadInputTest, ListsAreSortedAndRepeatedOrSenselessLinesLeftOut) {
   std::vector<std::string> lines(lines_.rbegin(), lines_.rend());
   lines.push_back(lines_[3]);

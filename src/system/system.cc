@@ -313,6 +313,7 @@ Reconstruction System::Impl::Resolve(const Map& map) const {
   result.num_maps = static_cast<int>(map.MapIds().size());
   result.num_loops = num_loops_;
   result.num_merges = num_merges_;
+  result.num_without_hindsight = hindsight_.num_left_out();
   if (detection_source_) result.detection = detection_source_->statistics();
   return result;
 }

@@ -36,6 +36,9 @@ struct Reconstruction {
   int num_maps = 0;
   int num_loops = 0;   // loops closed
   int num_merges = 0;  // maps merged
+  // The first frames of a long recording, whose poses are as tracked: there were more than
+  // HindsightOptions::max_frames.
+  int num_without_hindsight = 0;
   DetectionStatistics detection;
 };
 

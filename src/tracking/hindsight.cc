@@ -49,7 +49,9 @@ void Hindsight::Match(const TrackedFrame& tracked) {
                                .level = features.level[i]});
   }
   entries_.push_back(std::move(entry));
-  if (entries_.size() > static_cast<size_t>(options.hindsight.max_frames)) entries_.pop_front();
+  if (entries_.size() <= static_cast<size_t>(options.hindsight.max_frames)) return;
+  entries_.pop_front();
+  ++num_left_out_;
 }
 
 std::vector<PoseObservation> Hindsight::Observe(const Entry& entry, const Map& map,

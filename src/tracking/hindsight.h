@@ -52,6 +52,8 @@ class Hindsight {
   // Gives the frames the poses that their sightings of points tell with the points where `map` has
   // them now. A frame keeps its pose when too few of them are left or agree.
   void Revise(const Map& map, std::vector<ResolvedFrame>& frames) const;
+  // Frames that keep their poses because newer ones took their place.
+  int num_left_out() const { return num_left_out_; }
 
  private:
   // Of a point, packed: a minute of video has a million of them.
@@ -73,6 +75,7 @@ class Hindsight {
   const SharedMap& map_;
   LocalMap local_map_;
   std::deque<Entry> entries_;  // ascending by id
+  int num_left_out_ = 0;
 };
 
 }  // namespace msf

@@ -126,7 +126,9 @@ TEST_F(HindsightTest, OnlyTheNewestFramesAreRevised) {
   SharedMap map(std::move(at_.map));
   Hindsight hindsight = Make(map);
   hindsight.Match(older);
+  EXPECT_EQ(hindsight.num_left_out(), 0);
   hindsight.Match(newer);
+  EXPECT_EQ(hindsight.num_left_out(), 1);
   std::vector<ResolvedFrame> frames = {Resolved(older, *map.Read()), Resolved(newer, *map.Read())};
   hindsight.Revise(*map.Read(), frames);
   EXPECT_NEAR(at_.PoseError(frames[0].T_wc->Inverse()), 0.03, 1e-6);
