@@ -121,6 +121,13 @@ std::vector<KeyFrameId> Map::KeyFrameIds() const {
 
 int Map::NumKeyFrames(MapId map) const { return CountOf(keyframes_, map); }
 
+void Map::SetFeatures(KeyFrameId id, std::shared_ptr<const FrameFeatures> features) {
+  ++version_;
+  KeyFrame& keyframe = MutableKeyFrame(id);
+  MSF_CHECK(features->size() == keyframe.features->size(), "features keep their order");
+  keyframe.features = std::move(features);
+}
+
 void Map::SetPose(KeyFrameId id, const Rigid3d& T_cw) {
   ++version_;
   MutableKeyFrame(id).T_cw = T_cw;

@@ -50,6 +50,8 @@ class Map {
   std::vector<KeyFrameId> KeyFrameIds() const;
   int NumKeyFrames(MapId map) const;
   void SetPose(KeyFrameId id, const Rigid3d& T_cw);
+  // The same features in better places, as many in the same order.
+  void SetFeatures(KeyFrameId id, std::shared_ptr<const FrameFeatures> features);
   // T_cw of a keyframe, also of one that was culled (it moves with the one it was attached to).
   // Only for ids of this map.
   Rigid3d PoseOf(KeyFrameId id) const;

@@ -354,6 +354,18 @@ TEST_F(MapTest, VersionsCountChangesAndEpochsCorrections) {
   EXPECT_EQ(map_.epoch(), 1u);
 }
 
+TEST_F(MapTest, FeaturesMayMoveButStayThoseOfTheirPoints) {
+  const KeyFrameId a = Add(0);
+  AddPoints(a, 5);
+  const uint64_t version = map_.version();
+  auto moved = std::make_shared<FrameFeatures>(*map_.FindKeyFrame(a)->features);
+  moved->uv_px[0].x() += 3;
+  map_.SetFeatures(a, moved);
+  EXPECT_EQ(map_.FindKeyFrame(a)->features, moved);
+  EXPECT_GT(map_.version(), version);
+  EXPECT_THROW(map_.SetFeatures(a, std::make_shared<const FrameFeatures>()), ContractViolation);
+}
+
 TEST_F(MapTest, ContractsAreChecked) {
   EXPECT_THROW(map_.SetPose(KeyFrameId(0), Rigid3d()), ContractViolation);
   EXPECT_THROW(map_.RemovePoint(MapPointId(0)), ContractViolation);

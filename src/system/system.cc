@@ -256,6 +256,7 @@ void System::Impl::LookBackLater(const TrackingResult& result) {
   frame_delay_.Add({.id = result.frame_id,
                     .time_s = result.time_s,
                     .features = result.features,
+                    .shutter_left_in = result.shutter_left_in,
                     .points = result.points,
                     .reference = result.reference,
                     .T_c_reference = result.T_c_reference});

@@ -2,8 +2,17 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
+
+#include "tracking/first_frame.h"
 
 namespace msf {
+namespace {
+
+// Poses further apart say little about the velocity.
+constexpr double kLongestGap_s = 0.2;
+
+}  // namespace
 
 std::vector<TrackedFrame> FrameDelay::TakeDue() {
   std::vector<TrackedFrame> due;
@@ -21,25 +30,63 @@ std::vector<TrackedFrame> FrameDelay::TakeAll() {
   return all;
 }
 
-void Hindsight::Match(const TrackedFrame& tracked) {
-  const TrackingOptions& options = context_.options;
-  Frame frame;
-  {
-    const SharedMap::Reader map = map_.Read();
-    if (!map->Knows(tracked.reference)) return;
-    frame.T_cw = tracked.T_c_reference * map->PoseOf(tracked.reference);
-    for (const MapPointId point : tracked.points) {
-      const MapPointId now = map->Resolve(point);
-      if (map->FindPoint(now)) frame.points.push_back(now);
+void Hindsight::Match(const TrackedFrame& frame) {
+  if (first_) {
+    const TrackedFrame first = *std::exchange(first_, std::nullopt);
+    if (frame.time_s - first.time_s < kLongestGap_s) {
+      MatchFirst(first, frame);
+    } else {
+      MatchOne(first);
     }
-    local_map_.Update(*map, frame, options.max_local_keyframes, options.max_neighbours);
   }
-  const FrameFeatures& features = *tracked.features;
-  const LocalMatches local = MatchLocalPoints(context_, local_map_.points(), features, frame.T_cw,
-                                              {}, options.local_radius_factor_refined);
-  Entry entry{tracked.id, {}};
-  entry.sightings.reserve(local.matches.size());
-  for (const PointMatch& match : local.matches) {
+  if (frame.shutter_left_in) {
+    first_ = frame;
+  } else {
+    MatchOne(frame);
+  }
+}
+
+std::optional<Rigid3d> Hindsight::Approach(const TrackedFrame& tracked) {
+  const SharedMap::Reader map = map_.Read();
+  if (!map->Knows(tracked.reference)) return std::nullopt;
+  Frame frame;
+  frame.T_cw = tracked.T_c_reference * map->PoseOf(tracked.reference);
+  for (const MapPointId point : tracked.points) {
+    const MapPointId now = map->Resolve(point);
+    if (map->FindPoint(now)) frame.points.push_back(now);
+  }
+  local_map_.Update(*map, frame, context_.options.max_local_keyframes,
+                    context_.options.max_neighbours);
+  return frame.T_cw;
+}
+
+void Hindsight::MatchOne(const TrackedFrame& frame) {
+  const std::optional<Rigid3d> T_cw = Approach(frame);
+  if (!T_cw) return;
+  const LocalMatches local = MatchLocalPoints(context_, local_map_.points(), *frame.features, *T_cw,
+                                              {}, context_.options.local_radius_factor_refined);
+  Remember(frame.id, *frame.features, local.matches);
+}
+
+void Hindsight::MatchFirst(const TrackedFrame& first, const TrackedFrame& second) {
+  const std::optional<Rigid3d> T_cw_second = Approach(second), T_cw_first = Approach(first);
+  if (!T_cw_first || !T_cw_second) return;
+  const FirstFrame settled =
+      SettleFirstFrame(context_, local_map_.points(), *first.features, *T_cw_first, *T_cw_second,
+                       second.time_s - first.time_s);
+  Remember(first.id, *settled.features, settled.matches);
+  const SharedMap::Writer map = map_.Write();
+  const KeyFrame* keyframe = map->FindKeyFrame(first.reference);
+  if (!keyframe || keyframe->features != first.features) return;
+  map->SetFeatures(keyframe->id, settled.features);
+  map->SetPose(keyframe->id, settled.T_cw);
+}
+
+void Hindsight::Remember(FrameId id, const FrameFeatures& features,
+                         const std::vector<PointMatch>& matches) {
+  Entry entry{id, {}};
+  entry.sightings.reserve(matches.size());
+  for (const PointMatch& match : matches) {
     const int i = match.feature;
     entry.sightings.push_back({.point = static_cast<int32_t>(match.point.value()),
                                .u_px = features.uv_px[i].x(),
@@ -49,7 +96,7 @@ void Hindsight::Match(const TrackedFrame& tracked) {
                                .level = features.level[i]});
   }
   entries_.push_back(std::move(entry));
-  if (entries_.size() <= static_cast<size_t>(options.hindsight.max_frames)) return;
+  if (entries_.size() <= static_cast<size_t>(context_.options.hindsight.max_frames)) return;
   entries_.pop_front();
   ++num_left_out_;
 }

@@ -1,9 +1,11 @@
 // Where the frames were, once more: the map of the end knows its points better than that of the
-// moment did, and points that came after a frame.
+// moment did, and points that came after a frame; and of the first frame it is known by then how
+// fast the camera was.
 #pragma once
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "map/shared_map.h"
@@ -18,6 +20,7 @@ struct TrackedFrame {
   FrameId id;
   double time_s = 0;
   std::shared_ptr<const FrameFeatures> features;  // a rolling shutter undone
+  bool shutter_left_in = false;                   // or not: the velocity was not known
   std::vector<MapPointId> points;                 // per feature; invalid = none
   KeyFrameId reference;
   Rigid3d T_c_reference;
@@ -39,14 +42,16 @@ class FrameDelay {
   std::deque<TrackedFrame> frames_;
 };
 
-// Single-threaded; reads the map, which others may change meanwhile.
+// Single-threaded; others may read and change the map meanwhile.
 class Hindsight {
  public:
-  Hindsight(const TrackingContext& context, const SharedMap& map) : context_(context), map_(map) {}
+  Hindsight(const TrackingContext& context, SharedMap& map) : context_(context), map_(map) {}
 
   // Finds the points of the map in a frame, among those around its place, and remembers where they
   // are; the frame's features are not kept. Frames come in the order of their ids. Of the newest
-  // HindsightOptions::max_frames only.
+  // HindsightOptions::max_frames only. The first frame of a map, or after tracking was lost,
+  // waits for the second: its rolling shutter is undone (tracking/first_frame.h), and if it is a
+  // keyframe, that gets the features and the pose that come of it.
   void Match(const TrackedFrame& frame);
 
   // Gives the frames the poses that their sightings of points tell with the points where `map` has
@@ -68,13 +73,19 @@ class Hindsight {
     FrameId id;
     std::vector<Sighting> sightings;
   };
+  // Moves local_map_ to the frame, and says where that is; empty when its keyframe is gone.
+  std::optional<Rigid3d> Approach(const TrackedFrame& frame);
+  void MatchOne(const TrackedFrame& frame);
+  void MatchFirst(const TrackedFrame& first, const TrackedFrame& second);
+  void Remember(FrameId id, const FrameFeatures& features, const std::vector<PointMatch>& matches);
   // The sightings of points that are still in the map `id`, where they are now.
   std::vector<PoseObservation> Observe(const Entry& entry, const Map& map, MapId id) const;
 
   TrackingContext context_;
-  const SharedMap& map_;
+  SharedMap& map_;
   LocalMap local_map_;
-  std::deque<Entry> entries_;  // ascending by id
+  std::optional<TrackedFrame> first_;  // waits for the second
+  std::deque<Entry> entries_;          // ascending by id
   int num_left_out_ = 0;
 };
 

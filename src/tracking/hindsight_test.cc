@@ -56,7 +56,7 @@ class HindsightTest : public testing::Test {
   static Rigid3d Shift(double x_m) {
     return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x_m, 0, 0)};
   }
-  Hindsight Make(const SharedMap& map) const {
+  Hindsight Make(SharedMap& map) const {
     return {{*at_.world.camera(), at_.world.levels(), options_, at_.noise}, map};
   }
 
@@ -133,6 +133,68 @@ TEST_F(HindsightTest, OnlyTheNewestFramesAreRevised) {
   hindsight.Revise(*map.Read(), frames);
   EXPECT_NEAR(at_.PoseError(frames[0].T_wc->Inverse()), 0.03, 1e-6);
   EXPECT_LT(at_.PoseError(frames[1].T_wc->Inverse()), kMapsOwnError);
+}
+
+// A camera with a rolling shutter that turns; its first two frames are keyframes.
+class HindsightOfTheFirstFrameTest : public testing::Test {
+ protected:
+  HindsightOfTheFirstFrameTest() {
+    const auto seen = world_.Walk(0, 0.3, 0.05, Vector6d::Zero(), TestWorld::PoseOnCircle(0), map_);
+    for (const MapPointId id : map_.PointsSeenBy(seen)) map_.UpdateNormalAndRange(id);
+    const double interval_s = 1.0 / 30;
+    const Vector6d velocity = (Truth(1) * Truth(0).Inverse()).Log() / interval_s;
+    for (int i = 0; i < 2; ++i) {
+      const auto view = world_.Look(Truth(i), velocity);
+      KeyFrame keyframe;
+      keyframe.T_cw = (i == 0 ? kError : Rigid3d()) * Truth(i);
+      keyframe.features = view.features;
+      keyframe.words = view.words;
+      keyframe.colors_bgr.resize(view.landmarks.size());
+      frames_.push_back({.id = FrameId(i),
+                         .time_s = interval_s * i,
+                         .features = view.features,
+                         .shutter_left_in = i == 0,
+                         .points = map_.PointsSeenBy(seen),
+                         .reference = map_.AddKeyFrame(keyframe),
+                         .T_c_reference = {}});
+    }
+  }
+  static Rigid3d Truth(int i) { return TestWorld::PoseOnCircle(0.1 + 0.05 * i); }
+  // Of the first keyframe after both frames have been matched.
+  KeyFrame FirstKeyFrame() {
+    SharedMap map(std::move(map_));
+    Hindsight hindsight({*world_.camera(), world_.levels(), options_, noise_}, map);
+    for (const TrackedFrame& frame : frames_) hindsight.Match(frame);
+    return *map.Read()->FindKeyFrame(frames_[0].reference);
+  }
+  static double PoseError(const KeyFrame& first) {
+    return (first.T_cw * Truth(0).Inverse()).Log().norm();
+  }
+
+  const Rigid3d kError{Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.03, 0, 0)};
+  TestWorld world_{1, 5000, 0.025};
+  Map map_ = world_.EmptyMap();
+  std::vector<TrackedFrame> frames_;
+  const TrackingOptions options_;
+  const NoiseOptions noise_;
+};
+
+TEST_F(HindsightOfTheFirstFrameTest, ItsKeyFrameIsPutRight) {
+  const KeyFrame first = FirstKeyFrame();
+  EXPECT_LT(PoseError(first), 0.012);
+  EXPECT_NE(first.features, frames_[0].features);
+}
+
+TEST_F(HindsightOfTheFirstFrameTest, WhoseShutterWasUndoneStays) {
+  frames_[0].shutter_left_in = false;
+  const KeyFrame first = FirstKeyFrame();
+  EXPECT_NEAR(PoseError(first), 0.03, 1e-6);
+  EXPECT_EQ(first.features, frames_[0].features);
+}
+
+TEST_F(HindsightOfTheFirstFrameTest, AFrameAfterAGapDoesNotTellTheVelocity) {
+  frames_[1].time_s += 1;
+  EXPECT_NEAR(PoseError(FirstKeyFrame()), 0.03, 1e-6);
 }
 
 }  // namespace

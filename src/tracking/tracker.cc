@@ -145,19 +145,24 @@ bool Tracker::LocateByVelocity(TrackingResult& result) {
 void Tracker::BeginAnew() {
   frame_.features = extracted_;
   frame_.removed = extracted_removed_;
+  frame_.shutter_left_in = IsRolling();
   TakeMatches({});
   matches_.clear();
 }
 
+bool Tracker::IsRolling() const {
+  return camera_->rolling_shutter_s > 0 && options_.tracking.undo_rolling_shutter;
+}
+
 void Tracker::UndoRollingShutterAt(const std::optional<Vector6d>& velocity) {
-  const bool is_rolling = camera_->rolling_shutter_s > 0 && options_.tracking.undo_rolling_shutter;
-  if (!is_rolling || !velocity) return;
+  if (!IsRolling() || !velocity) return;
   const auto undo = [&](const FrameFeatures& extracted) {
     return std::make_shared<const FrameFeatures>(
         UndoRollingShutter(extracted, *camera_, *velocity));
   };
   frame_.features = undo(*extracted_);
   frame_.removed = undo(*extracted_removed_);
+  frame_.shutter_left_in = false;
 }
 
 std::optional<Vector6d> Tracker::PredictVelocity() const {
@@ -382,6 +387,7 @@ void Tracker::RememberFrame(bool tracked, TrackingResult& result) {
   result.reference = frame_.reference;
   result.T_c_reference = frame_.T_c_reference;
   result.features = frame_.features;
+  result.shutter_left_in = frame_.shutter_left_in;
   result.points = frame_.points;
   last_ = std::move(frame_);
 }

@@ -59,6 +59,8 @@ class Tracker {
   bool ReadmitKnown(int min_inliers, TrackingResult& result);
   // Takes the frame as it came.
   void BeginAnew();
+  // Whether rows are exposed one after the other, and that is to be undone.
+  bool IsRolling() const;
   // Moves the features to where they would be without a rolling shutter, if the velocity is known.
   void UndoRollingShutterAt(const std::optional<Vector6d>& velocity);
   // Twist per second by the last two poses, and at the present one by these three.

@@ -36,6 +36,7 @@ struct TrackingResult {
   KeyFrameId reference;
   Rigid3d T_c_reference;
   std::shared_ptr<const FrameFeatures> features;  // those that were used, a rolling shutter undone
+  bool shutter_left_in = false;                   // or not: the velocity was not known
   std::vector<MapPointId> points;                 // per feature: the map point it shows, if any
   bool started_map = false;                       // this frame is the first of a new map
   std::optional<KeyFrameId> new_keyframe;         // this frame became a keyframe
