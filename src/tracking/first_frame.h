@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "tracking/pose_tracking.h"
@@ -18,9 +19,11 @@ struct FirstFrame {
 // The frame with `features` as extracted and the pose `T_cw` as tracked, once the pose of the next
 // one is known, `interval_s` later. In turn its velocity comes from the two poses and its pose from
 // the features that the velocity straightens: for a map that has seen the place from other frames
-// as well. `points`: of the map around it; when too few of them agree the pose is kept.
-FirstFrame SettleFirstFrame(const TrackingContext& context,
-                            const std::vector<PointSnapshot>& points, const FrameFeatures& features,
-                            const Rigid3d& T_cw, const Rigid3d& T_cw_next, double interval_s);
+// as well. `points`: of the map around it; when too few of them agree the pose is kept. Empty where
+// the camera was so slow that the noise of its velocity would bend the frame as much.
+std::optional<FirstFrame> SettleFirstFrame(const TrackingContext& context,
+                                           const std::vector<PointSnapshot>& points,
+                                           const FrameFeatures& features, const Rigid3d& T_cw,
+                                           const Rigid3d& T_cw_next, double interval_s);
 
 }  // namespace msf

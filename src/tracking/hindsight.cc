@@ -71,15 +71,19 @@ void Hindsight::MatchOne(const TrackedFrame& frame) {
 void Hindsight::MatchFirst(const TrackedFrame& first, const TrackedFrame& second) {
   const std::optional<Rigid3d> T_cw_second = Approach(second), T_cw_first = Approach(first);
   if (!T_cw_first || !T_cw_second) return;
-  const FirstFrame settled =
+  const std::optional<FirstFrame> settled =
       SettleFirstFrame(context_, local_map_.points(), *first.features, *T_cw_first, *T_cw_second,
                        second.time_s - first.time_s);
-  Remember(first.id, *settled.features, settled.matches);
+  if (!settled) {
+    MatchOne(first);
+    return;
+  }
+  Remember(first.id, *settled->features, settled->matches);
   const SharedMap::Writer map = map_.Write();
   const KeyFrame* keyframe = map->FindKeyFrame(first.reference);
   if (!keyframe || keyframe->features != first.features) return;
-  map->SetFeatures(keyframe->id, settled.features);
-  map->SetPose(keyframe->id, settled.T_cw);
+  map->SetFeatures(keyframe->id, settled->features);
+  map->SetPose(keyframe->id, settled->T_cw);
 }
 
 void Hindsight::Remember(FrameId id, const FrameFeatures& features,
