@@ -33,7 +33,9 @@ std::vector<TrackedFrame> FrameDelay::TakeAll() {
 void Hindsight::Match(const TrackedFrame& frame) {
   if (first_) {
     const TrackedFrame first = *std::exchange(first_, std::nullopt);
-    if (frame.time_s - first.time_s < kLongestGap_s) {
+    // One that begins anew itself may be in another map.
+    const bool follows = !frame.shutter_left_in && frame.time_s - first.time_s < kLongestGap_s;
+    if (follows) {
       MatchFirst(first, frame);
     } else {
       MatchOne(first);

@@ -192,6 +192,11 @@ TEST_F(HindsightOfTheFirstFrameTest, WhoseShutterWasUndoneStays) {
   EXPECT_EQ(first.features, frames_[0].features);
 }
 
+TEST_F(HindsightOfTheFirstFrameTest, AFrameThatBeginsAnewDoesNotTellTheVelocity) {
+  frames_[1].shutter_left_in = true;
+  EXPECT_NEAR(PoseError(FirstKeyFrame()), 0.03, 1e-6);
+}
+
 TEST_F(HindsightOfTheFirstFrameTest, AFrameAfterAGapDoesNotTellTheVelocity) {
   frames_[1].time_s += 1;
   EXPECT_NEAR(PoseError(FirstKeyFrame()), 0.03, 1e-6);
