@@ -74,7 +74,7 @@ void FrameFeatures::FindInArea(const Eigen::Vector2d& centre_px, double radius_p
     const int32_t end = cell_begin_[row * kGridColumns + last_column + 1];
     for (int32_t k = begin; k < end; ++k) {
       const CellPoint& point = cell_points_[k];
-      // One branch for all: most points of these cells fail one of the tests, each as likely.
+      // One branch for all tests: which of them fails is hard to predict.
       const bool inside = (point.level >= min_level) & (point.level <= max_level) &
                           (std::abs(point.uv_px.x() - centre.x()) < radius) &
                           (std::abs(point.uv_px.y() - centre.y()) < radius);

@@ -10,8 +10,8 @@ namespace {
 // Each takes three quarters or more off what the pose still moves.
 constexpr int kRounds = 5;
 
-// Mean shift of the features, px. A velocity between two poses that are off by 2 to 3 mm and 0.2
-// degrees shifts them by 0.5 px.
+// Mean shift of the features, px. Poses that are off by 2 to 3 mm and 0.2 degrees give a velocity
+// that shifts them by about half of this.
 constexpr double kLeastBend_px = 1;
 
 double MeanShift(const FrameFeatures& a, const FrameFeatures& b) {

@@ -20,7 +20,7 @@ struct FirstFrame {
 // one is known, `interval_s` later. In turn its velocity comes from the two poses and its pose from
 // the features that the velocity straightens: for a map that has seen the place from other frames
 // as well. `points`: of the map around it; when too few of them agree the pose is kept. Empty where
-// the camera was so slow that the noise of its velocity would bend the frame as much.
+// the camera was so slow that much of what is undone would be noise of its velocity.
 std::optional<FirstFrame> SettleFirstFrame(const TrackingContext& context,
                                            const std::vector<PointSnapshot>& points,
                                            const FrameFeatures& features, const Rigid3d& T_cw,

@@ -65,7 +65,7 @@ TEST_F(FirstFrameTest, WithoutPointsThePoseStays) {
   EXPECT_NEAR(PoseError(*first), 0.04, 1e-6);
 }
 
-TEST_F(FirstFrameTest, ASlowCameraBendsItLessThanNoiseWould) {
+TEST_F(FirstFrameTest, OfASlowCameraNothingIsUndone) {
   features_ = world_.Look(truth_).features;
   next_ = TestWorld::PoseOnCircle(0.101);
   EXPECT_FALSE(Settle());
