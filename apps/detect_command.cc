@@ -87,7 +87,8 @@ void AddDetectCommand(CLI::App& app) {
   const auto arguments = std::make_shared<DetectArguments>();
   command->add_option("source", arguments->source, "image, folder, VOC data set or RGB-D sequence")
       ->required();
-  arguments->detector.AddTo(*command);
+  arguments->detector.held = "any";
+  arguments->detector.AddForPictures(*command);
   command->add_option("--list", arguments->list_file,
                       "file that names the wanted images by their stems, one per line");
   command->add_option("--confidence", arguments->detector.options.confidence, "least score")

@@ -7,12 +7,25 @@
 
 #include "apps/command.h"
 #include "detection/detector.h"
+#include "detection/turn_search.h"
 
 namespace msf {
 
 struct DetectorArguments {
   DetectorOptions options;
   std::string size;  // WIDTHxHEIGHT, empty: the options' own
+  std::string held = "upright";
+
+  // With the option that says how pictures were held.
+  void AddForPictures(CLI::App& command) {
+    AddTo(command);
+    command
+        .add_option("--held", held,
+                    "how the camera was held: upright, or any: 7 ways up are tried for each "
+                    "picture and the one that shows most is taken")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"upright", "any"}));
+  }
 
   void AddTo(CLI::App& command) {
     command
@@ -38,7 +51,9 @@ struct DetectorArguments {
                              "'");
       }
     }
-    return Require(MakeDetector(options));
+    std::unique_ptr<Detector> detector = Require(MakeDetector(options));
+    if (held == "upright") return detector;
+    return std::make_unique<TurnSearch>(std::move(detector), options.confidence);
   }
 };
 

@@ -164,7 +164,7 @@ void AddDetectorEvaluateCommand(CLI::App& detector) {
       ->required();
   arguments->detector.options.width = arguments->detector.options.height = 0;
   arguments->detector.size = "320x320";
-  arguments->detector.AddTo(*command);
+  arguments->detector.AddForPictures(*command);
   command
       ->add_option("--min-objects", arguments->min_objects,
                    "classes with fewer objects do not enter the means")

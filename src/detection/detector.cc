@@ -4,6 +4,7 @@
 
 #include "detection/onednn_detector.h"
 #include "detection/opencv_detector.h"
+#include "detection/turned_picture.h"
 
 namespace msf {
 
@@ -31,8 +32,19 @@ Status DetectorOptions::Check() const {
   return Status::Ok();
 }
 
-StatusOr<Detections> Detector::Detect(const RgbdFrame& frame) {
-  StatusOr<Detections> detections = DetectInImage(frame.color);
+StatusOr<Detections> Detector::DetectTurned(const cv::Mat& image, double turn_rad) {
+  if (image.empty()) return Status::Error("the image for the detector is empty");
+  const TurnedPicture turned(image, turn_rad, input_size());
+  StatusOr<Detections> detections = DetectInImage(turned.pixels());
+  if (!detections.ok()) return detections;
+  for (Detection& object : detections->objects) object.box = turned.ToImage(object.box);
+  std::erase_if(detections->objects, [](const Detection& d) { return d.box.area() <= 0; });
+  return detections;
+}
+
+StatusOr<Detections> Detector::Detect(const RgbdFrame& frame, double turn_rad) {
+  StatusOr<Detections> detections =
+      turn_rad == 0 ? DetectInImage(frame.color) : DetectTurned(frame.color, turn_rad);
   if (!detections.ok()) return detections;
   detections->frame = frame.id;
   detections->time_s = frame.time_s;

@@ -58,8 +58,13 @@ class Detector {
   // are not set.
   virtual StatusOr<Detections> DetectInImage(const cv::Mat& image) = 0;
 
-  // The colour image of a frame; the result carries the frame's id and time.
-  StatusOr<Detections> Detect(const RgbdFrame& frame);
+  // The same for an image that is upright only after it has been turned by `turn_rad`, clockwise as
+  // one looks at it. Boxes are upright boxes in pixels of `image` around what was found
+  // (TurnedPicture).
+  StatusOr<Detections> DetectTurned(const cv::Mat& image, double turn_rad);
+
+  // The colour image of a frame, turned if need be; the result carries the frame's id and time.
+  StatusOr<Detections> Detect(const RgbdFrame& frame, double turn_rad = 0);
 
   // Confidence at which DetectInImage reports, 0 to 1.
   virtual void set_confidence(double confidence) = 0;

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <exception>
+#include <utility>
 
 namespace msf {
 
@@ -26,11 +27,12 @@ DetectionSource::~DetectionSource() {
   if (thread_.joinable()) thread_.join();
 }
 
-void DetectionSource::Offer(const RgbdFramePtr& frame) {
+void DetectionSource::Offer(const RgbdFramePtr& frame, double turn_rad) {
   if (num_offered_++ % options_.every != 0) return;
-  if (!thread_.joinable()) return Detect(*frame);
+  const Task task{frame, options_.turn_upright ? turn_rad : 0};
+  if (!thread_.joinable()) return Detect(task);
   const std::lock_guard lock(mutex_);
-  mailbox_ = frame;
+  mailbox_ = task;
   changed_.notify_all();
 }
 
@@ -44,7 +46,7 @@ std::shared_ptr<const Detections> DetectionSource::Newest(FrameId now) const {
 
 void DetectionSource::WaitUntilTaken() const {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return closed_ || !mailbox_; });
+  changed_.wait(lock, [&] { return closed_ || !mailbox_.frame; });
 }
 
 DetectionStatistics DetectionSource::statistics() const {
@@ -54,25 +56,24 @@ DetectionStatistics DetectionSource::statistics() const {
 
 void DetectionSource::Run() {
   while (true) {
-    RgbdFramePtr frame;
+    Task task;
     {
       std::unique_lock lock(mutex_);
-      changed_.wait(lock, [&] { return closed_ || mailbox_; });
+      changed_.wait(lock, [&] { return closed_ || mailbox_.frame; });
       if (closed_) return;
-      frame = std::move(mailbox_);
-      mailbox_ = nullptr;
+      task = std::exchange(mailbox_, {});
       changed_.notify_all();
     }
-    Detect(*frame);
+    Detect(task);
   }
 }
 
-void DetectionSource::Detect(const RgbdFrame& frame) {
+void DetectionSource::Detect(const Task& task) {
   const auto start = std::chrono::steady_clock::now();
   StatusOr<Detections> found = Status::Error("");
   // A user's detector may throw anything; tracking goes on without it.
   try {
-    found = detector_->Detect(frame);
+    found = detector_->Detect(*task.frame, task.turn_rad);
   } catch (const std::exception& failure) {
     found = Status::Error(failure.what());
   } catch (...) {
@@ -86,7 +87,7 @@ void DetectionSource::Detect(const RgbdFrame& frame) {
   s.mean_ms += (elapsed.count() - s.mean_ms) / static_cast<double>(s.num_detected);
   if (!found.ok()) {
     if (s.num_failed++ == 0)
-      s.first_failure = "frame " + std::to_string(frame.id.value()) + ": " + found.message();
+      s.first_failure = "frame " + std::to_string(task.frame->id.value()) + ": " + found.message();
     return;
   }
   results_.push_back(std::make_shared<const Detections>(*std::move(found)));

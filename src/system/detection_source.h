@@ -14,16 +14,20 @@
 
 namespace msf {
 
-// Which frames are detected and when results are handed out; other values than the defaults serve
-// experiments.
+// Which frames are detected, how they are turned and when results are handed out; other values than
+// the defaults serve experiments.
 struct DetectionScheduleOptions {
   int every = 1;
   int delay_frames = 0;
+  bool turn_upright = true;
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
     visit("every", every, "only every so-manieth frame is given to the detector");
     visit("delay_frames", delay_frames, "results are held back for so many frames");
+    visit("turn_upright", turn_upright,
+          "the detector sees images turned upright while the camera is rolled by more than 45 "
+          "degrees");
   }
   Status Check() const;
 };
@@ -47,8 +51,9 @@ class DetectionSource {
   DetectionSource(const DetectionSource&) = delete;
   DetectionSource& operator=(const DetectionSource&) = delete;
 
-  // Gives the present frame to the detector, in place of one that still waits.
-  void Offer(const RgbdFramePtr& frame);
+  // Gives the present frame to the detector, in place of one that still waits. `turn_rad`: by how
+  // much it has to be turned, clockwise, to be upright.
+  void Offer(const RgbdFramePtr& frame, double turn_rad = 0);
   // The newest detections; null when there are none yet. They carry the frame that they belong to.
   std::shared_ptr<const Detections> Newest(FrameId now) const;
   // Waits until the mailbox is empty: for recordings, which come faster than a camera's images.
@@ -56,8 +61,13 @@ class DetectionSource {
   DetectionStatistics statistics() const;
 
  private:
+  struct Task {
+    RgbdFramePtr frame;  // null: none
+    double turn_rad = 0;
+  };
+
   void Run();
-  void Detect(const RgbdFrame& frame);
+  void Detect(const Task& task);
 
   const std::unique_ptr<Detector> detector_;
   const DetectionScheduleOptions options_;
@@ -65,7 +75,7 @@ class DetectionSource {
 
   mutable std::mutex mutex_;  // guards all below
   mutable std::condition_variable changed_;
-  RgbdFramePtr mailbox_;
+  Task mailbox_;
   bool closed_ = false;
   std::deque<std::shared_ptr<const Detections>> results_;  // newest last
   DetectionStatistics statistics_;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <semaphore>
 #include <stdexcept>
@@ -70,6 +71,37 @@ TEST(DetectionSource, InlineTheResultIsThereAtOnce) {
   EXPECT_EQ(source.statistics().num_detected, 5);
   EXPECT_EQ(source.statistics().num_failed, 0);
   source.WaitUntilTaken();  // nothing waits
+}
+
+// A detector of 8x8 pixels that tells which of the four sides of what it sees is bright.
+class SideDetector : public Detector {
+ public:
+  SideDetector() : Detector({"left", "top"}, {8, 8}, "sides") {}
+  StatusOr<Detections> DetectInImage(const cv::Mat& image) override {
+    Detections found;
+    const bool left = image.at<uint8_t>(4, 1) > 128, top = image.at<uint8_t>(1, 4) > 128;
+    if (left) found.objects.push_back({0, 1, {0, 2, 3, 6}});
+    if (top) found.objects.push_back({1, 1, {2, 0, 6, 3}});
+    return found;
+  }
+  void set_confidence(double) override {}
+};
+
+TEST(DetectionSource, ARolledFrameIsTurnedUpright) {
+  auto frame = std::make_shared<RgbdFrame>();
+  frame->id = FrameId(0);
+  frame->color = cv::Mat(8, 8, CV_8U, cv::Scalar(0));
+  frame->color(cv::Rect(0, 2, 3, 4)) = cv::Scalar(255);  // left
+  for (const bool turn_upright : {true, false}) {
+    DetectionSource source(std::make_unique<SideDetector>(), {.turn_upright = turn_upright}, false);
+    source.Offer(frame, M_PI / 2);
+    const std::shared_ptr<const Detections> newest = source.Newest(FrameId(0));
+    ASSERT_EQ(newest->objects.size(), 1u);
+    EXPECT_EQ(newest->objects[0].class_id, turn_upright ? 1 : 0);
+    // The place is that in the frame.
+    EXPECT_NEAR(newest->objects[0].box.x0, 0, 1e-5);
+    EXPECT_NEAR(newest->objects[0].box.y1, 6, 1e-5);
+  }
 }
 
 TEST(DetectionSource, OnlyEverySoManiethFrame) {

@@ -5,6 +5,7 @@
 
 #include "loop_closing/full_bundle.h"
 #include "system/worker.h"
+#include "tracking/camera_roll.h"
 #include "tracking/hindsight.h"
 #include "tracking/stamp_lag.h"
 #include "tracking/tracker.h"
@@ -62,7 +63,7 @@ class System::Impl {
   void OfferToDetector(const RgbdFramePtr& frame, StageTimings& timings_ms);
   FrameFeatures Extract(const RgbdFrame& frame, StageTimings& timings_ms);
   DynamicResult Classify(const RgbdFramePtr& frame, const FrameFeatures& features);
-  void TellFilter(const TrackingResult& result);
+  void TakePose(const TrackingResult& result);
   MappingLoad Load() const;
   void HandOn(KeyFrameId id);
   void MapKeyFrame(KeyFrameId id);
@@ -83,6 +84,7 @@ class System::Impl {
   LocalMapper mapper_;
   LoopCloser loop_closer_;
   FullBundle full_bundle_;
+  CameraRoll camera_roll_;
   TrajectoryRecorder recorder_;
   FrameDelay frame_delay_;
   Hindsight hindsight_;
@@ -168,7 +170,7 @@ StatusOr<TrackingResult> System::Impl::Track(const RgbdFramePtr& frame) {
   }
   result.timings_ms = std::move(timings_ms);
   if (filter_) {
-    TellFilter(result);
+    TakePose(result);
     for (const int k : result.readmitted)
       dynamics.labels.Set(split.removed_from[k], PointReason::kKnown, 1);
     for (const auto& observer : observers_) observer->OnDynamics(*frame, *features, dynamics);
@@ -183,7 +185,7 @@ StatusOr<TrackingResult> System::Impl::Track(const RgbdFramePtr& frame) {
 void System::Impl::OfferToDetector(const RgbdFramePtr& frame, StageTimings& timings_ms) {
   const StageTimer timer(timings_ms, "detection");
   if (options_.wait_for_mapping) detection_source_->WaitUntilTaken();
-  detection_source_->Offer(frame);
+  detection_source_->Offer(frame, camera_roll_.TurnUpright_rad());
 }
 
 FrameFeatures System::Impl::Extract(const RgbdFrame& frame, StageTimings& timings_ms) {
@@ -203,9 +205,11 @@ DynamicResult System::Impl::Classify(const RgbdFramePtr& frame, const FrameFeatu
   return filter_->Classify(*frame, features, T_last_now, detections.get());
 }
 
-void System::Impl::TellFilter(const TrackingResult& result) {
+void System::Impl::TakePose(const TrackingResult& result) {
   const uint64_t epoch = map_.Read()->epoch();
-  filter_->TakePose(result.T_cw, !result.started_map && epoch == filter_epoch_, result.landmarks);
+  const bool same_world = !result.started_map && epoch == filter_epoch_;
+  filter_->TakePose(result.T_cw, same_world, result.landmarks);
+  if (result.T_cw) camera_roll_.Add(*result.T_cw, same_world);
   filter_epoch_ = epoch;
 }
 
