@@ -14,6 +14,9 @@ constexpr float kLeastEvidence = 0.2f;
 // object more that is found with some certainty.
 constexpr double kTurnedMargin = 0.4;
 
+// Of the detections that are reported and those that speak for a view.
+double LeastWanted(double confidence) { return std::min<double>(confidence, kLeastEvidence); }
+
 double EvidenceOf(const Detections& detections) {
   double sum = 0;
   for (const Detection& object : detections.objects) {
@@ -29,12 +32,12 @@ TurnSearch::TurnSearch(std::unique_ptr<Detector> detector, double confidence)
                fmt::format("{}, {} ways up", detector->description(), std::size(kTurns_deg) + 1)),
       detector_(std::move(detector)),
       confidence_(confidence) {
-  set_confidence(confidence);
+  detector_->set_confidence(LeastWanted(confidence));
 }
 
 void TurnSearch::set_confidence(double confidence) {
   confidence_ = confidence;
-  detector_->set_confidence(std::min<double>(confidence, kLeastEvidence));
+  detector_->set_confidence(LeastWanted(confidence));
 }
 
 StatusOr<Detections> TurnSearch::DetectInImage(const cv::Mat& image) {

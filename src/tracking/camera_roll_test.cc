@@ -22,7 +22,7 @@ Rigid3d Pose(double yaw, double pitch, double roll) {
   return Rigid3d(R_wc, {1, 2, 3}).Inverse();
 }
 
-double Turn_deg(const CameraRoll& roll) { return roll.TurnUpright_rad() / kDegree; }
+double TurnDegrees(const CameraRoll& roll) { return roll.TurnUpright_rad() / kDegree; }
 
 TEST(CameraRoll, LevelCamerasAreNotTurned) {
   CameraRoll roll;
@@ -39,7 +39,7 @@ TEST(CameraRoll, ARolledPictureIsTurnedBack) {
     for (int i = 0; i < 100; ++i) roll.Add(Pose(0, 30, 0), true);
     for (int i = 0; i <= 20; ++i) roll.Add(Pose(0, 30, angle * i / 20), true);
     // A camera that was turned clockwise shows everything turned the other way.
-    EXPECT_NEAR(Turn_deg(roll), angle, 15) << "the way there tilts the mean a little";
+    EXPECT_NEAR(TurnDegrees(roll), angle, 15) << "the way there tilts the mean a little";
   }
 }
 
@@ -51,7 +51,7 @@ TEST(CameraRoll, PitchDoesNotMatterOnceTheCameraHasLookedAround) {
   for (const double angle : {60.0, -70.0, 90.0, 180.0}) {
     CameraRoll now = roll;
     now.Add(Pose(120, 40, angle), true);
-    EXPECT_NEAR(std::remainder(Turn_deg(now) - angle, 360), 0, 12) << angle;
+    EXPECT_NEAR(std::remainder(TurnDegrees(now) - angle, 360), 0, 12) << angle;
   }
 }
 
@@ -59,10 +59,10 @@ TEST(CameraRoll, DownIsCarriedIntoANewWorld) {
   CameraRoll roll;
   for (int i = 0; i < 300; ++i) roll.Add(Pose(i, 20, 0), true);
   roll.Add(Pose(0, 20, 80), true);
-  const double before = Turn_deg(roll);
+  const double before = TurnDegrees(roll);
   EXPECT_NEAR(before, 80, 5);
   roll.Add(Rigid3d(), false);  // a new map: the world is this camera
-  EXPECT_NEAR(Turn_deg(roll), before, 3);
+  EXPECT_NEAR(TurnDegrees(roll), before, 3);
   // If that was wrong, since the camera was held otherwise meanwhile, it is unlearnt.
   for (int i = 0; i < 200; ++i) roll.Add(Rigid3d(), true);
   EXPECT_EQ(roll.TurnUpright_rad(), 0);
