@@ -73,7 +73,7 @@ TEST(DetectionSource, InlineTheResultIsThereAtOnce) {
   source.WaitUntilTaken();  // nothing waits
 }
 
-// A detector of 8x8 pixels that tells which of the four sides of what it sees is bright.
+// A detector of 8x8 pixels that tells whether left or top of what it sees is bright.
 class SideDetector : public Detector {
  public:
   SideDetector() : Detector({"left", "top"}, {8, 8}, "sides") {}

@@ -11,7 +11,6 @@ constexpr double kTrustInMeanY = 0.1;
 constexpr double kLeastRoll_rad = M_PI / 4;
 // Sine of the angle between viewing direction and vertical below which nothing is upright.
 constexpr double kLeastLevel = 0.2;
-
 // As many poses what was learnt in another world is worth, since the camera has moved in between.
 constexpr double kMostMoved = 100;
 
