@@ -1,6 +1,7 @@
 #include "system/detection_source.h"
 
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -9,6 +10,8 @@ namespace msf {
 Status DetectionScheduleOptions::Check() const {
   if (every < 1 || delay_frames < 0)
     return Status::Error("detection: every must be at least 1, delay_frames not negative");
+  if (!(std::abs(mounted_deg) <= 180))
+    return Status::Error("detection: mounted_deg must lie between -180 and 180");
   return Status::Ok();
 }
 

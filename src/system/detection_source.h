@@ -20,6 +20,7 @@ struct DetectionScheduleOptions {
   int every = 1;
   int delay_frames = 0;
   bool turn_upright = true;
+  double mounted_deg = 0;
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
@@ -28,6 +29,9 @@ struct DetectionScheduleOptions {
     visit("turn_upright", turn_upright,
           "the detector sees images turned upright while the camera is rolled by more than 45 "
           "degrees");
+    visit("mounted_deg", mounted_deg,
+          "clockwise turn by which the images of a camera that is held as usual become upright, "
+          "degrees: 90 or -90 for one that is mounted on its side");
   }
   Status Check() const;
 };

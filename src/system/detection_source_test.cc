@@ -54,6 +54,8 @@ TEST(DetectionSchedule, Check) {
   EXPECT_TRUE(DetectionScheduleOptions().Check().ok());
   EXPECT_FALSE((DetectionScheduleOptions{.every = 0}.Check().ok()));
   EXPECT_FALSE((DetectionScheduleOptions{.delay_frames = -1}.Check().ok()));
+  EXPECT_TRUE((DetectionScheduleOptions{.mounted_deg = -90}.Check().ok()));
+  EXPECT_FALSE((DetectionScheduleOptions{.mounted_deg = 181}.Check().ok()));
 }
 
 TEST(DetectionSource, InlineTheResultIsThereAtOnce) {

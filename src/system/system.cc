@@ -113,6 +113,7 @@ System::Impl::Impl(const SystemOptions& options, const Camera& camera,
       mapper_(options.mapping, options.noise, map_, vocabulary),
       loop_closer_(options.loop_closing, options.noise, map_, database_, options.seed),
       full_bundle_(options.loop_closing, options.noise, map_),
+      camera_roll_(options.detection.mounted_deg * M_PI / 180),
       frame_delay_(options.tracking.hindsight.after_s),
       hindsight_({*camera_, extractor_.levels(), options_.tracking, options_.noise}, map_) {
   if (detector) {

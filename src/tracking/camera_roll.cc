@@ -16,12 +16,18 @@ constexpr double kMostMoved = 100;
 
 }  // namespace
 
+CameraRoll::CameraRoll(double mounted_rad)
+    : x_c_(std::cos(mounted_rad), -std::sin(mounted_rad), 0),
+      y_c_(std::sin(mounted_rad), std::cos(mounted_rad), 0),
+      down_c_(y_c_) {}
+
 void CameraRoll::Add(const Rigid3d& T_cw, bool same_world) {
   const Eigen::Matrix3d R_wc = T_cw.RotationMatrix().transpose();
   if (!same_world) MoveTo(R_wc);
   R_wc_ = R_wc;
-  sum_xx_ += R_wc.col(0) * R_wc.col(0).transpose();
-  sum_y_ += R_wc.col(1);
+  const Eigen::Vector3d x_w = R_wc * x_c_;
+  sum_xx_ += x_w * x_w.transpose();
+  sum_y_ += R_wc * y_c_;
   ++num_poses_;
   // Minimises the mean of (x . down)^2 + trust |down - mean y|^2.
   const Eigen::Matrix3d weights =

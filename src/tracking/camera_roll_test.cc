@@ -55,6 +55,17 @@ TEST(CameraRoll, PitchDoesNotMatterOnceTheCameraHasLookedAround) {
   }
 }
 
+TEST(CameraRoll, ACameraMountedOnItsSide) {
+  CameraRoll roll(-M_PI / 2);
+  EXPECT_NEAR(TurnDegrees(roll), -90, 1e-9) << "before the first pose, too";
+  for (int i = 0; i < 200; ++i) {
+    roll.Add(Pose(2 * i, 30, -90 + 10 * std::sin(0.2 * i)), true);
+    EXPECT_NEAR(TurnDegrees(roll), -90 + 10 * std::sin(0.2 * i), 20) << "frame " << i;
+  }
+  roll.Add(Pose(400, 30, 0), true);
+  EXPECT_EQ(roll.TurnUpright_rad(), 0);
+}
+
 TEST(CameraRoll, DownIsCarriedIntoANewWorld) {
   CameraRoll roll;
   for (int i = 0; i < 300; ++i) roll.Add(Pose(i, 20, 0), true);
