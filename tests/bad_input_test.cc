@@ -1,5 +1,6 @@
 // Input that is broken, or missing, or too much for the disk: a sentence, or survived and counted.
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -214,6 +215,14 @@ TEST_F(BadInputTest, AnInterruptedRunWritesWhatItHas) {
   const size_t num_poses = ReadTrajectory(folder_ / "out/trajectory.txt")->size();
   EXPECT_GE(num_poses, 1u);
   EXPECT_LT(num_poses, static_cast<size_t>(kFrames));
+}
+
+TEST(Processor, APrecisionThatItLacksIsNamed) {
+  setenv("ONEDNN_MAX_CPU_ISA", "AVX2", 1);  // in the program that runs next
+  const Outcome outcome = RunProgram("detector time --precision bf16 --runs 1");
+  unsetenv("ONEDNN_MAX_CPU_ISA");
+  EXPECT_NE(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.output, HasSubstr("this processor cannot compute in bf16"));
 }
 
 }  // namespace

@@ -52,6 +52,7 @@ std::unique_ptr<Step> MakePoolStep(const PoolSpec& spec, const StepMemory& memor
 bool CanWrite(NumberFormat compute, NumberFormat output);
 
 // What this processor computes fast.
+bool HasBfloat16();      // AVX-512, where oneDNN makes do without BF16 instructions
 bool HasFastBfloat16();  // AVX-512 BF16 or AMX
 bool HasFastInt8();      // AVX-512 VNNI, AVX2 VNNI or AMX
 bool HasMatrixUnit();    // AMX

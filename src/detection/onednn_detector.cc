@@ -109,6 +109,10 @@ Status CheckImage(const cv::Mat& image) {
 StatusOr<std::unique_ptr<Detector>> MakeOneDnnDetector(const DetectorOptions& options,
                                                        const Graph& graph,
                                                        NetworkPrecision precision) {
+  if (precision == NetworkPrecision::kBfloat16 && !HasBfloat16()) {
+    return Status::Error(
+        "this processor cannot compute in bf16, which takes AVX-512; use precision auto or fp32");
+  }
   StatusOr<cv::Size> size = InputSizeFor(options, graph);
   if (!size.ok()) return size.status();
   CompileOptions compile;
