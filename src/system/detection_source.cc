@@ -1,11 +1,21 @@
 #include "system/detection_source.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <chrono>
 #include <cmath>
 #include <exception>
 #include <utility>
 
 namespace msf {
+namespace {
+
+// Where the processor has too few cores for everything, tracking goes first. (Linux keeps a
+// niceness for each thread.)
+constexpr int kNiceness = 5;
+
+}  // namespace
 
 Status DetectionScheduleOptions::Check() const {
   if (every < 1 || delay_frames < 0)
@@ -58,6 +68,7 @@ DetectionStatistics DetectionSource::statistics() const {
 }
 
 void DetectionSource::Run() {
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);
   while (true) {
     Task task;
     {
