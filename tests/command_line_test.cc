@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <string>
 
 #include "io/test_folder.h"
@@ -15,6 +16,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 Trajectory Spiral() {
   Trajectory t;
@@ -75,6 +77,18 @@ TEST(CommandLine, EvaluateExplainsMistakes) {
                  "no/e.json");
   EXPECT_NE(RunProgram("evaluate " + truth).exit_code, 0);
   EXPECT_NE(RunProgram("evaluate " + truth + truth + "--frames 5 --dataset " + path).exit_code, 0);
+}
+
+TEST(CommandLine, PicturesAreSeenSevenWaysUpUnlessTheyAreUpright) {
+  const TestFolder folder;
+  ASSERT_TRUE(
+      cv::imwrite((folder / "grey.png").string(), cv::Mat(48, 64, CV_8UC3, cv::Scalar(99))));
+  const std::string command = "detect " + (folder / "grey.png").string();
+  EXPECT_THAT(RunProgram(command).output, HasSubstr("7 ways up"));
+  EXPECT_THAT(RunProgram(command + " --held upright").output, Not(HasSubstr("ways up")));
+  const Outcome wrong = RunProgram(command + " --held sideways");
+  EXPECT_NE(wrong.exit_code, 0);
+  EXPECT_THAT(wrong.output, HasSubstr("{upright,any}"));
 }
 
 TEST(CommandLine, WhatMovesIsShownLabelledAndScored) {

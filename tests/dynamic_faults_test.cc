@@ -150,6 +150,23 @@ TEST_F(DynamicFaults, NoneToCompareWith) {
   EXPECT_GT(listener_->num_known_objects, kNumFrames / 2);
 }
 
+// Told of a camera that is mounted on its side, the system has its detector look at turned
+// pictures.
+TEST_F(DynamicFaults, ACameraOnItsSide) {
+  for (const double mounted_deg : {0, 90}) {
+    SystemOptions options = PipelineOptions(true);
+    options.detection.mounted_deg = mounted_deg;
+    int turned = 0;
+    Run(
+        [&turned](const cv::Mat& image) -> StatusOr<std::vector<Detection>> {
+          turned += image.size() == cv::Size(416, 320);  // of the network, else of the camera
+          return std::vector<Detection>();
+        },
+        FrameAt, options);
+    EXPECT_EQ(turned, mounted_deg == 0 ? 0 : kNumFrames);
+  }
+}
+
 TEST_F(DynamicFaults, DetectorThrows) {
   Run([](const cv::Mat&) -> StatusOr<std::vector<Detection>> {
     throw std::runtime_error("out of memory");

@@ -1,5 +1,8 @@
 #include "detection/dnnl_types.h"
 
+#include <algorithm>
+#include <initializer_list>
+
 #include "detection/dnnl_steps.h"
 
 namespace msf {
@@ -35,40 +38,27 @@ dnnl::memory::dims PadEnd(const Window& window, const Shape& input) {
   return pads;
 }
 
+namespace {
+
+using Isa = dnnl::cpu_isa;
+
+// Whether oneDNN computes with one of these instruction sets here.
+bool HasOneOf(std::initializer_list<Isa> sets) {
+  return std::find(sets.begin(), sets.end(), dnnl::get_effective_cpu_isa()) != sets.end();
+}
+
+}  // namespace
+
 bool HasBfloat16() {
-  switch (dnnl::get_effective_cpu_isa()) {
-    case dnnl::cpu_isa::avx512_core:
-    case dnnl::cpu_isa::avx512_core_vnni:
-    case dnnl::cpu_isa::avx512_core_bf16:
-    case dnnl::cpu_isa::avx512_core_amx:
-      return true;
-    default:
-      return false;
-  }
+  return HasOneOf({Isa::avx512_core, Isa::avx512_core_vnni}) || HasFastBfloat16();
 }
 
-bool HasFastBfloat16() {
-  switch (dnnl::get_effective_cpu_isa()) {
-    case dnnl::cpu_isa::avx512_core_bf16:
-    case dnnl::cpu_isa::avx512_core_amx:
-      return true;
-    default:
-      return false;
-  }
-}
+bool HasFastBfloat16() { return HasOneOf({Isa::avx512_core_bf16, Isa::avx512_core_amx}); }
 
-bool HasMatrixUnit() { return dnnl::get_effective_cpu_isa() == dnnl::cpu_isa::avx512_core_amx; }
+bool HasMatrixUnit() { return HasOneOf({Isa::avx512_core_amx}); }
 
 bool HasFastInt8() {
-  switch (dnnl::get_effective_cpu_isa()) {
-    case dnnl::cpu_isa::avx2_vnni:
-    case dnnl::cpu_isa::avx512_core_vnni:
-    case dnnl::cpu_isa::avx512_core_bf16:
-    case dnnl::cpu_isa::avx512_core_amx:
-      return true;
-    default:
-      return false;
-  }
+  return HasOneOf({Isa::avx2_vnni, Isa::avx512_core_vnni}) || HasFastBfloat16();
 }
 
 }  // namespace msf

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
 #include "detection/turned_box.h"
+#include "detection/turned_picture.h"
 #include "util/check.h"
 
 namespace msf {
@@ -19,17 +19,10 @@ ImageBox CutBy(const ImageBox& box, float width, float height) {
 
 LabeledPicture Rotate(const LabeledPicture& picture, double degrees, double q) {
   const int side = std::max(picture.pixels.cols, picture.pixels.rows);
-  const double half = side / 2.0;
-  const double angle = degrees * CV_PI / 180, c = std::cos(angle), s = std::sin(angle);
-  const double x = picture.pixels.cols / 2.0, y = picture.pixels.rows / 2.0;
-  // Of box coordinates, where pixel 0 spans 0 to 1; warpAffine counts from pixel centres.
-  const cv::Matx23d map(c, -s, half - c * x + s * y, s, c, half - s * x - c * y);
-  cv::Matx23d of_centres = map;
-  of_centres(0, 2) += (c - s - 1) / 2;
-  of_centres(1, 2) += (s + c - 1) / 2;
+  const cv::Matx23d map =
+      TurnAboutCentre(picture.pixels.size(), degrees * CV_PI / 180, {side, side});
   LabeledPicture turned;
-  cv::warpAffine(picture.pixels, turned.pixels, of_centres, {side, side}, cv::INTER_LINEAR,
-                 cv::BORDER_CONSTANT, cv::Scalar::all(114));
+  turned.pixels = WarpOntoGrey(picture.pixels, map, {side, side});
   for (LabeledBox object : picture.objects) {
     const ImageBox hull = TurnBox(object.box, map, q);
     object.box = CutBy(hull, static_cast<float>(side), static_cast<float>(side));

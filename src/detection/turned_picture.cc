@@ -15,33 +15,41 @@ namespace {
 constexpr double kFilled = 1.5;
 
 // The largest scale at which the ellipse in a turned image of `image` pixels fits into `size`.
-double ScaleToFit(cv::Size image, double cosine, double sine, cv::Size size) {
-  const double width = std::hypot(image.width * cosine, image.height * sine);
-  const double height = std::hypot(image.width * sine, image.height * cosine);
+double ScaleToFit(cv::Size image, double turn_rad, cv::Size size) {
+  const double c = std::cos(turn_rad), s = std::sin(turn_rad);
+  const double width = std::hypot(image.width * c, image.height * s);
+  const double height = std::hypot(image.width * s, image.height * c);
   return std::min(size.width / width, size.height / height);
 }
 
 }  // namespace
 
+cv::Matx23d TurnAboutCentre(cv::Size from, double turn_rad, cv::Size to) {
+  const double c = std::cos(turn_rad), s = std::sin(turn_rad);
+  const double x = from.width / 2.0, y = from.height / 2.0;
+  return {c, -s, to.width / 2.0 - c * x + s * y, s, c, to.height / 2.0 - s * x - c * y};
+}
+
+cv::Mat WarpOntoGrey(const cv::Mat& image, const cv::Matx23d& map, cv::Size size) {
+  cv::Matx23d of_centres = map;  // warpAffine counts from the pixels' centres
+  for (int axis = 0; axis < 2; ++axis) of_centres(axis, 2) += (map(axis, 0) + map(axis, 1) - 1) / 2;
+  cv::Mat warped;
+  cv::warpAffine(image, warped, of_centres, size, cv::INTER_LINEAR, cv::BORDER_CONSTANT,
+                 cv::Scalar::all(114));
+  return warped;
+}
+
 TurnedPicture::TurnedPicture(const cv::Mat& image, double turn_rad, cv::Size size)
     : image_size_(image.size()) {
   MSF_CHECK(!image.empty() && !size.empty(), "an image needs pixels");
-  const double c = std::cos(turn_rad), s = std::sin(turn_rad);
-  const double scale = ScaleToFit(image.size(), c, s, size);
+  const double scale = ScaleToFit(image.size(), turn_rad, size);
   // Warping looks at four pixels only: a smaller picture is made first.
   const cv::Size scaled_size(std::max(1, static_cast<int>(std::lround(image.cols * scale))),
                              std::max(1, static_cast<int>(std::lround(image.rows * scale))));
   cv::Mat scaled;
   cv::resize(image, scaled, scaled_size, 0, 0, cv::INTER_LINEAR);
-  const double x = scaled.cols / 2.0, y = scaled.rows / 2.0;
-  // Of box coordinates, where pixel 0 spans 0 to 1; warpAffine counts from pixel centres.
-  const cv::Matx23d turn(c, -s, size.width / 2.0 - c * x + s * y, s, c,
-                         size.height / 2.0 - s * x - c * y);
-  cv::Matx23d of_centres = turn;
-  of_centres(0, 2) += (c - s - 1) / 2;
-  of_centres(1, 2) += (s + c - 1) / 2;
-  cv::warpAffine(scaled, pixels_, of_centres, size, cv::INTER_LINEAR, cv::BORDER_CONSTANT,
-                 cv::Scalar::all(114));
+  const cv::Matx23d turn = TurnAboutCentre(scaled.size(), turn_rad, size);
+  pixels_ = WarpOntoGrey(scaled, turn, size);
   cv::invertAffineTransform(turn, to_image_);
   for (int column = 0; column < 3; ++column) {
     to_image_(0, column) *= static_cast<double>(image.cols) / scaled.cols;

@@ -8,6 +8,13 @@
 
 namespace msf {
 
+// The turn by `turn_rad`, clockwise as one looks at it, that brings the middle of an image of size
+// `from` to the middle of one of size `to`. Of box coordinates, where pixel 0 spans 0 to 1.
+cv::Matx23d TurnAboutCentre(cv::Size from, double turn_rad, cv::Size to);
+
+// The image under such a map, on grey (value 114).
+cv::Mat WarpOntoGrey(const cv::Mat& image, const cv::Matx23d& map, cv::Size size);
+
 class TurnedPicture {
  public:
   // `image` (8-bit, 1 or 3 channels), turned by `turn_rad` (clockwise as one looks at it) about its

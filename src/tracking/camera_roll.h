@@ -22,9 +22,9 @@ class CameraRoll {
   void Add(const Rigid3d& T_cw, bool same_world);
 
   // The angle, clockwise as one looks at the picture, by which it has to be turned to be upright,
-  // as of the last pose; 0 before there is one, while the camera is rolled by less than 45 degrees
-  // (detectors cope with that, and all turning costs pixels), and while it looks almost straight up
-  // or down, where nothing is upright.
+  // as of the last pose; as mounted before there is one. 0 when it is less than 45 degrees
+  // (detectors cope with that, and all turning costs pixels), and while the camera looks almost
+  // straight up or down, where nothing is upright.
   double TurnUpright_rad() const;
 
  private:

@@ -43,8 +43,8 @@ TEST(CameraRoll, ARolledPictureIsTurnedBack) {
   }
 }
 
-// A camera that looks down at a desk and turns: its mean y axis alone would be 40 degrees off at
-// the start.
+// A camera that looks down at a desk and has turned by 120 degrees: the first y axis would be 56
+// degrees off now.
 TEST(CameraRoll, PitchDoesNotMatterOnceTheCameraHasLookedAround) {
   CameraRoll roll;
   for (int i = 0; i < 300; ++i) roll.Add(Pose(0.4 * i, 40, 0), true);
