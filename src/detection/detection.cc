@@ -1,6 +1,7 @@
 #include "detection/detection.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace msf {
 namespace {
@@ -17,19 +18,38 @@ float IntersectionOverUnion(const ImageBox& a, const ImageBox& b) {
   return both > 0 ? common.area() / both : 0;
 }
 
-std::vector<Detection> SuppressOverlaps(std::vector<Detection> detections, float max_iou,
-                                        size_t max_count) {
-  std::stable_sort(detections.begin(), detections.end(),
-                   [](const Detection& a, const Detection& b) { return a.score > b.score; });
-  if (detections.size() > kMaxCandidates) detections.resize(kMaxCandidates);
+namespace {
+
+// Applies the rule to what is weaker than `better`.
+void LowerOverlapped(std::vector<Detection>& weaker, const Detection& better,
+                     const OverlapRule& rule) {
+  constexpr float kDropped = -1;
+  for (Detection& d : weaker) {
+    if (d.class_id != better.class_id) continue;
+    const float iou = IntersectionOverUnion(better.box, d.box);
+    if (iou <= 0) continue;
+    if (rule.decay > 0) d.score *= std::exp(-iou * iou / rule.decay);
+    if (iou > rule.max_iou || d.score < rule.min_score) d.score = kDropped;
+  }
+  std::erase_if(weaker, [](const Detection& d) { return d.score == kDropped; });
+}
+
+}  // namespace
+
+std::vector<Detection> SuppressOverlaps(std::vector<Detection> detections,
+                                        const OverlapRule& rule) {
+  const auto weaker = [](const Detection& a, const Detection& b) { return a.score < b.score; };
+  if (detections.size() > kMaxCandidates) {
+    std::stable_sort(detections.begin(), detections.end(),
+                     [&](const Detection& a, const Detection& b) { return weaker(b, a); });
+    detections.resize(kMaxCandidates);
+  }
   std::vector<Detection> kept;
-  for (const Detection& candidate : detections) {
-    if (kept.size() == max_count) break;
-    const bool covered = std::any_of(kept.begin(), kept.end(), [&](const Detection& better) {
-      return better.class_id == candidate.class_id &&
-             IntersectionOverUnion(better.box, candidate.box) > max_iou;
-    });
-    if (!covered) kept.push_back(candidate);
+  while (!detections.empty() && kept.size() < rule.max_count) {
+    const auto best = std::max_element(detections.begin(), detections.end(), weaker);
+    kept.push_back(*best);
+    detections.erase(best);
+    LowerOverlapped(detections, kept.back(), rule);
   }
   return kept;
 }

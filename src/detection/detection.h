@@ -38,10 +38,16 @@ struct Detections {
   std::vector<Detection> objects;
 };
 
-// Greedy non-maximum suppression per class: a detection is dropped when a better one of its class
-// overlaps it by more than `max_iou`. Keeps at most `max_count`, best first; equal scores keep
-// their order.
-std::vector<Detection> SuppressOverlaps(std::vector<Detection> detections, float max_iou,
-                                        size_t max_count);
+// What becomes of detections that a better one of their class overlaps.
+struct OverlapRule {
+  float max_iou = 0.7F;  // beyond: dropped
+  float decay = 0;       // else: score times exp(-iou^2 / decay); 0 leaves scores alone
+  float min_score = 0;   // dropped where that takes them below
+  size_t max_count = 300;
+};
+
+// Non-maximum suppression per class, with scores that overlaps lower (Bodla et al., "Soft-NMS",
+// ICCV 2017). Best first; equal scores keep their order.
+std::vector<Detection> SuppressOverlaps(std::vector<Detection> detections, const OverlapRule& rule);
 
 }  // namespace msf

@@ -27,9 +27,16 @@ Status DetectorOptions::Check() const {
     return Status::Error("the detector's confidence must lie between 0 and 1");
   if (!(max_iou > 0 && max_iou <= 1))
     return Status::Error("the detector's max_iou must lie between 0 and 1");
+  if (!(overlap_decay >= 0))
+    return Status::Error("the detector's overlap_decay must not be negative");
   if (max_detections < 1) return Status::Error("the detector's max_detections must be at least 1");
   if (threads < 1) return Status::Error("the detector needs at least one thread");
   return Status::Ok();
+}
+
+OverlapRule DetectorOptions::overlaps() const {
+  return {static_cast<float>(max_iou), static_cast<float>(overlap_decay),
+          static_cast<float>(confidence), static_cast<size_t>(max_detections)};
 }
 
 StatusOr<Detections> Detector::DetectTurned(const cv::Mat& image, double turn_rad) {

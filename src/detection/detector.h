@@ -21,6 +21,7 @@ struct DetectorOptions {
   int height = 0;
   double confidence = 0.25;
   double max_iou = 0.7;
+  double overlap_decay = 0.5;
   int max_detections = 300;
   bool every_class = false;
   std::string classes;
@@ -39,6 +40,9 @@ struct DetectorOptions {
     visit("confidence", confidence, "least score of a detection, 0 to 1");
     visit("max_iou", max_iou,
           "overlap above which the weaker of two detections of one class is dropped");
+    visit("overlap_decay", overlap_decay,
+          "other detections that a better one of their class overlaps lose score by exp(-iou^2 / "
+          "this); 0: they keep it");
     visit("max_detections", max_detections, "most detections per image");
     visit("every_class", every_class,
           "report a box once for each class that reaches the confidence (evaluation)");
@@ -47,6 +51,7 @@ struct DetectorOptions {
           "threads of the network; more than one pays only on an otherwise idle machine");
   }
   Status Check() const;
+  OverlapRule overlaps() const;
 };
 
 // Finds objects in one image at a time. Not to be used by two threads at once.

@@ -146,7 +146,9 @@ DetectorOptions OptionsFor(const fs::path& model, const std::string& backend = "
 }
 
 void ExpectSameDetections(const fs::path& model, DetectorOptions options) {
-  options.max_iou = 1;  // which of two equal boxes stays is chance
+  // Which of two equal boxes stays, or keeps its score, is chance.
+  options.max_iou = 1;
+  options.overlap_decay = 0;
   const auto onednn = MakeDetector(options).value();
   options.backend = "opencv";
   const auto opencv = MakeDetector(options).value();

@@ -32,8 +32,7 @@ class OneDnnDetector : public Detector {
     std::vector<Detection> found =
         decoder_.Decode(network_->outputs(), confidence, options_.every_class);
     Detections result;
-    result.objects = SuppressOverlaps(std::move(found), static_cast<float>(options_.max_iou),
-                                      static_cast<size_t>(options_.max_detections));
+    result.objects = SuppressOverlaps(std::move(found), options_.overlaps());
     for (Detection& object : result.objects) object.box = letterbox.ToImage(object.box);
     return result;
   }

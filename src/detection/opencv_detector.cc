@@ -53,8 +53,7 @@ class OpenCvDetector : public Detector {
         decoder_.Decode(Views(results, output_names_), static_cast<float>(options_.confidence),
                         options_.every_class);
     Detections detections;
-    detections.objects = SuppressOverlaps(std::move(found), static_cast<float>(options_.max_iou),
-                                          static_cast<size_t>(options_.max_detections));
+    detections.objects = SuppressOverlaps(std::move(found), options_.overlaps());
     for (Detection& object : detections.objects) object.box = letterbox.ToImage(object.box);
     return detections;
   }

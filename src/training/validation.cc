@@ -56,7 +56,8 @@ std::vector<Detection> SelectDetections(const torch::Tensor& scores, const torch
           {static_cast<int>(c), score[a][c], {box[a][0], box[a][1], box[a][2], box[a][3]}});
     }
   }
-  return SuppressOverlaps(std::move(candidates), kMaxIou, kMostDetections);
+  return SuppressOverlaps(std::move(candidates),
+                          {.max_iou = kMaxIou, .max_count = kMostDetections});
 }
 
 DetectionMetrics Validate(Network& network, const std::vector<LabeledImage>& images, int side,
