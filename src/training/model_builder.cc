@@ -34,23 +34,22 @@ class DetectorBuilder {
 
  private:
   // A stand-alone stride-2 convolution, which is what MSFConv replaces.
-  int Down(int input, int channels, bool in_backbone) {
-    const bool replaced =
-        config_.msf_placement == "all" || (config_.msf_placement == "backbone" && in_backbone);
-    return replaced ? MsfConvLayer(build_, input, channels, shape_)
-                    : ConvLayer(build_, input, channels, 3, 2);
+  int Down(int input, int channels) {
+    const int layer = static_cast<int>(graph_.layers.size());
+    return config_.HasMsfConvAt(layer) ? MsfConvLayer(build_, input, channels, shape_)
+                                       : ConvLayer(build_, input, channels, 3, 2);
   }
 
   Pyramid Backbone(int image) {
     Pyramid stages{};
-    int x = Down(image, 16, true);
-    x = Down(x, 32, true);
+    int x = Down(image, 16);
+    x = Down(x, 32);
     x = C2fLayer(build_, x, 32, 1, true);
-    x = Down(x, 64, true);
+    x = Down(x, 64);
     stages[0] = C2fLayer(build_, x, 64, 2, true);
-    x = Down(stages[0], 128, true);
+    x = Down(stages[0], 128);
     stages[1] = C2fLayer(build_, x, 128, 2, true);
-    x = Down(stages[1], 256, true);
+    x = Down(stages[1], 256);
     x = C2fLayer(build_, x, 256, 1, true);
     stages[2] = SppfLayer(build_, x, 256);
     return stages;
@@ -63,9 +62,9 @@ class DetectorBuilder {
     x = ConcatLayer(build_, {UpsampleLayer(build_, middle), stages[0]});
     Pyramid out{};
     out[0] = C2fLayer(build_, x, 64, 1, false);
-    x = ConcatLayer(build_, {Down(out[0], 64, false), middle});
+    x = ConcatLayer(build_, {Down(out[0], 64), middle});
     out[1] = C2fLayer(build_, x, 128, 1, false);
-    x = ConcatLayer(build_, {Down(out[1], 128, false), stages[2]});
+    x = ConcatLayer(build_, {Down(out[1], 128), stages[2]});
     out[2] = C2fLayer(build_, x, 256, 1, false);
     return out;
   }

@@ -2,19 +2,57 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
+#include <sstream>
 
 #include "util/options.h"
 
 namespace msf {
+
+namespace {
+
+// YOLOv8n's stand-alone stride-2 convolutions: of the backbone, and of backbone and neck.
+const std::vector<int> kBackbone = {0, 1, 3, 5, 7};
+const std::vector<int> kAll = {0, 1, 3, 5, 7, 16, 19};
+
+bool Contains(const std::vector<int>& layers, int layer) {
+  return std::find(layers.begin(), layers.end(), layer) != layers.end();
+}
+
+// The layers that a placement names; nothing where it is not understood.
+std::optional<std::vector<int>> MsfLayers(const std::string& placement) {
+  if (placement == "none") return std::vector<int>();
+  if (placement == "backbone") return kBackbone;
+  if (placement == "all") return kAll;
+  std::vector<int> layers;
+  std::istringstream list(placement);
+  int layer = 0;
+  while (list >> layer) {
+    if (!Contains(kAll, layer)) return std::nullopt;
+    layers.push_back(layer);
+    if (list.eof()) return layers;
+    if (list.get() != ',') return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool ModelConfig::HasMsfConvAt(int layer) const {
+  return Contains(MsfLayers(msf_placement).value_or(std::vector<int>()), layer);
+}
 
 Status ModelConfig::Check() const {
   const auto one_of = [](const std::string& value, const std::vector<std::string>& allowed) {
     return std::find(allowed.begin(), allowed.end(), value) != allowed.end();
   };
   const auto odd = [](int kernel) { return kernel >= 1 && kernel <= 15 && kernel % 2 == 1; };
-  if (!one_of(msf_placement, {"none", "backbone", "all"}))
-    return Status::Error("msf_placement must be none, backbone or all, not '" + msf_placement +
-                         "'");
+  if (!MsfLayers(msf_placement)) {
+    return Status::Error(
+        "msf_placement must be none, backbone, all or a list of stride-2 layers (0, 1, 3, 5, 7, "
+        "16, 19) like 3,5, not '" +
+        msf_placement + "'");
+  }
   if (!one_of(neck, {"pan", "fpn", "hrnet"}))
     return Status::Error("neck must be pan, fpn or hrnet, not '" + neck + "'");
   if (!(msf_width > 0.0 && msf_width <= 2.0)) return Status::Error("msf_width must lie in (0, 2]");
@@ -34,6 +72,11 @@ StatusOr<ModelConfig> LoadModelConfig(const std::string& name_or_file) {
     config.msf_placement = "all";
     return config;
   }
+  if (name_or_file == "yolov8n_msf_wide") {
+    config.msf_placement = "3,5";
+    config.msf_width = 0.75;
+    return config;
+  }
   if (name_or_file == "yolov8n_coco") {
     config.classes = CocoClasses();
     return config;
@@ -44,7 +87,8 @@ StatusOr<ModelConfig> LoadModelConfig(const std::string& name_or_file) {
   }
   if (!std::filesystem::exists(name_or_file)) {
     return Status::Error("there is no model '" + name_or_file +
-                         "': use yolov8n, yolov8n_msf, yolov8n_fpn, yolov8n_hrnet, yolov8n_coco or "
+                         "': use yolov8n, yolov8n_msf, yolov8n_msf_wide, yolov8n_fpn, "
+                         "yolov8n_hrnet, yolov8n_coco or "
                          "the path of a YAML file");
   }
   config.name = std::filesystem::path(name_or_file).stem().string();

@@ -30,6 +30,9 @@ TEST(ModelConfigTest, SizesAgreeWithThePaper) {
   const ModelGraph msf = Build("yolov8n_msf");
   EXPECT_EQ(CountParameters(msf), 3194844);
   EXPECT_NEAR(CountFlops(msf, 640, 640) * 1e-9, 8.9, 0.01 * 8.9);
+  const ModelGraph wide = Build("yolov8n_msf_wide");
+  EXPECT_NEAR(static_cast<double>(CountParameters(wide)), 3.19e6, 0.01 * 3.19e6);
+  EXPECT_NEAR(CountFlops(wide, 640, 640) * 1e-9, 8.9, 0.01 * 8.9);
 }
 
 TEST(ModelConfigTest, CocoHeadHasItsKnownSize) {
@@ -55,6 +58,19 @@ TEST(ModelConfigTest, PlacementDecidesWhichConvolutionsBecomeMsfConv) {
   config.msf_placement = "all";
   EXPECT_EQ(CountLayers(BuildModelGraph(config), "MSFConv"), 7);
   EXPECT_EQ(CountLayers(BuildModelGraph(config), "Conv"), 0);
+  config.msf_placement = "3, 19";
+  const ModelGraph graph = BuildModelGraph(config);
+  EXPECT_EQ(CountLayers(graph, "MSFConv"), 2);
+  EXPECT_EQ(graph.layers[3].type, "MSFConv");
+  EXPECT_EQ(graph.layers[19].type, "MSFConv");
+}
+
+TEST(ModelConfigTest, PlacementMustNameStrideTwoLayers) {
+  ModelConfig config = *LoadModelConfig("yolov8n");
+  for (const char* placement : {"2", "3,", "3;5", "3 5", ",3", "3,5x", "", "-1"}) {
+    config.msf_placement = placement;
+    EXPECT_FALSE(config.Check().ok()) << "'" << placement << "'";
+  }
 }
 
 TEST(ModelConfigTest, BranchSetsAreOptions) {
@@ -66,7 +82,8 @@ TEST(ModelConfigTest, BranchSetsAreOptions) {
 }
 
 TEST(ModelConfigTest, HeadsCoverThreeScales) {
-  for (const char* name : {"yolov8n", "yolov8n_msf", "yolov8n_fpn", "yolov8n_hrnet"}) {
+  for (const char* name :
+       {"yolov8n", "yolov8n_msf", "yolov8n_msf_wide", "yolov8n_fpn", "yolov8n_hrnet"}) {
     const ModelGraph graph = Build(name);
     ASSERT_EQ(graph.box_heads.size(), 3U) << name;
     for (int i = 0; i < 3; ++i) {

@@ -61,7 +61,8 @@ TEST(FastSiluTest, SlicesWithGapsWork) {
 }
 
 TEST(NetworkTest, HeadsHaveTheirShapes) {
-  for (const char* name : {"yolov8n", "yolov8n_msf", "yolov8n_fpn", "yolov8n_hrnet"}) {
+  for (const char* name :
+       {"yolov8n", "yolov8n_msf", "yolov8n_msf_wide", "yolov8n_fpn", "yolov8n_hrnet"}) {
     const Network network(BuildModelGraph(*LoadModelConfig(name)), 0);
     const torch::NoGradGuard no_grad;
     const HeadOutputs heads = network.Forward(torch::rand({1, 3, 64, 96}));
