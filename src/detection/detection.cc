@@ -9,17 +9,6 @@ namespace {
 // More candidates than this come from a network that cannot tell objects from background.
 constexpr size_t kMaxCandidates = 30000;
 
-}  // namespace
-
-float IntersectionOverUnion(const ImageBox& a, const ImageBox& b) {
-  const ImageBox common{std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1),
-                        std::min(a.y1, b.y1)};
-  const float both = a.area() + b.area() - common.area();
-  return both > 0 ? common.area() / both : 0;
-}
-
-namespace {
-
 // Applies the rule to what is weaker than `better`.
 void LowerOverlapped(std::vector<Detection>& weaker, const Detection& better,
                      const OverlapRule& rule) {
@@ -35,6 +24,13 @@ void LowerOverlapped(std::vector<Detection>& weaker, const Detection& better,
 }
 
 }  // namespace
+
+float IntersectionOverUnion(const ImageBox& a, const ImageBox& b) {
+  const ImageBox common{std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1),
+                        std::min(a.y1, b.y1)};
+  const float both = a.area() + b.area() - common.area();
+  return both > 0 ? common.area() / both : 0;
+}
 
 std::vector<Detection> SuppressOverlaps(std::vector<Detection> detections,
                                         const OverlapRule& rule) {
