@@ -16,7 +16,7 @@ struct DetectorArguments {
   std::string size;  // WIDTHxHEIGHT, empty: the options' own
   std::string held = "upright";
 
-  // With the option that says how pictures were held.
+  // With the options for single pictures: how they were held, and which of two boxes counts.
   void AddForPictures(CLI::App& command) {
     AddTo(command);
     command
@@ -25,6 +25,11 @@ struct DetectorArguments {
                     "picture and the one that shows most is taken")
         ->capture_default_str()
         ->check(CLI::IsMember({"upright", "any"}));
+    command
+        .add_option("--overlap-decay", options.overlap_decay,
+                    "boxes that a better one of their class overlaps lose score by exp(-iou^2 / "
+                    "this); 0: they keep it, as with the YOLOv8 tools")
+        ->capture_default_str();
   }
 
   void AddTo(CLI::App& command) {

@@ -89,6 +89,7 @@ TEST(CommandLine, PicturesAreSeenSevenWaysUpUnlessTheyAreUpright) {
   const Outcome wrong = RunProgram(command + " --held sideways");
   EXPECT_NE(wrong.exit_code, 0);
   EXPECT_THAT(wrong.output, HasSubstr("{upright,any}"));
+  ExpectSentence(RunProgram(command + " --overlap-decay -1"), "overlap_decay must not be negative");
 }
 
 TEST(CommandLine, WhatMovesIsShownLabelledAndScored) {
