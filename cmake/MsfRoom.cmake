@@ -1,6 +1,7 @@
 # msf_room(NAME [DEPENDS room ...] [LINK library ...] [PRIVATE_LINK library ...] [NOT_INSTALLED] [OWN_FLAGS])
 # A room is a folder of src/: one static library from its *.cc, one test program from its *_test.cc, one benchmark program
-# from its *_benchmark.cc. OWN_FLAGS: what is precompiled (MsfPrecompiled) does not fit. DEPENDS names rooms below it (tests/include_direction_test checks that includes agree).
+# from its *_benchmark.cc. DEPENDS names rooms below it (tests/include_direction_test checks that includes agree). OWN_FLAGS: it is
+# compiled with other flags than most rooms, so what MsfPrecompiled made does not fit.
 function(msf_room name)
   cmake_parse_arguments(ROOM "NOT_INSTALLED;OWN_FLAGS" "" "DEPENDS;LINK;PRIVATE_LINK" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cc)

@@ -32,18 +32,18 @@ TEST(SuppressOverlaps, KeepsTheBestOfItsClass) {
 }
 
 TEST(SuppressOverlaps, OverlappedOnesLoseScore) {
-  const ImageBox half{5, 0, 15, 10};  // overlaps kA by a third
+  const ImageBox shifted{5, 0, 15, 10};  // overlaps kA by a third
   const OverlapRule rule{.max_iou = 0.7f, .decay = 0.5f, .min_score = 0.25f};
   const std::vector<Detection> kept = SuppressOverlaps(
-      {Found(0.8f, half), Found(0.9f, kA), Found(0.7f, kB), Found(0.75f, half, 1)}, rule);
+      {Found(0.8f, shifted), Found(0.9f, kA), Found(0.7f, kB), Found(0.75f, shifted, 1)}, rule);
   ASSERT_EQ(kept.size(), 4u);
   EXPECT_FLOAT_EQ(kept[1].score, 0.75f);  // another class keeps its score
   EXPECT_FLOAT_EQ(kept[2].score, 0.7f);
   EXPECT_NEAR(kept[3].score, 0.8 * std::exp(-(1.0 / 9) / 0.5), 1e-6);
 
   // 0.3 falls below the least score.
-  EXPECT_EQ(SuppressOverlaps({Found(0.3f, half), Found(0.9f, kA)}, rule).size(), 1u);
-  EXPECT_EQ(SuppressOverlaps({Found(0.3f, half), Found(0.9f, kA)}, {}).size(), 2u);
+  EXPECT_EQ(SuppressOverlaps({Found(0.3f, shifted), Found(0.9f, kA)}, rule).size(), 1u);
+  EXPECT_EQ(SuppressOverlaps({Found(0.3f, shifted), Found(0.9f, kA)}, {}).size(), 2u);
 }
 
 // Two objects; the first detection is right, the second wrong, the third right.

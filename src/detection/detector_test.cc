@@ -173,6 +173,22 @@ TEST(Detector, BackendsAgreeOnRawHeads) {
   ExpectSameDetections(model, OptionsFor(model));
 }
 
+TEST(Detector, OverlappingDetectionsLoseScore) {
+  const fs::path model = Write("overlaps.onnx", TestNetwork({}).builder().Bytes());
+  DetectorOptions options = OptionsFor(model);
+  options.overlap_decay = 0;
+  const Detections kept = MakeDetector(options).value()->DetectInImage(Picture(120, 70)).value();
+  options.overlap_decay = 0.5;
+  const Detections lowered = MakeDetector(options).value()->DetectInImage(Picture(120, 70)).value();
+  const auto sum = [](const Detections& detections) {
+    double scores = 0;
+    for (const Detection& d : detections.objects) scores += d.score;
+    return scores;
+  };
+  EXPECT_LT(sum(lowered), sum(kept));
+  for (const Detection& d : lowered.objects) EXPECT_GE(d.score, options.confidence);
+}
+
 TEST(Detector, ReadsACommonExportWithClassesFile) {
   TestNetworkOptions network;
   network.single_output = true;

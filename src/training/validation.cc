@@ -14,8 +14,6 @@ namespace msf {
 namespace {
 
 constexpr size_t kBatch = 16;
-constexpr float kMaxIou = 0.7F;
-constexpr size_t kMostDetections = 300;
 constexpr float kMinScore = 0.001F;
 
 // Images [begin, end) letterboxed to `side`, as [batch, 3, side, side], RGB in [0, 1].
@@ -56,8 +54,7 @@ std::vector<Detection> SelectDetections(const torch::Tensor& scores, const torch
           {static_cast<int>(c), score[a][c], {box[a][0], box[a][1], box[a][2], box[a][3]}});
     }
   }
-  return SuppressOverlaps(std::move(candidates),
-                          {.max_iou = kMaxIou, .max_count = kMostDetections});
+  return SuppressOverlaps(std::move(candidates), OverlapRule{});
 }
 
 DetectionMetrics Validate(Network& network, const std::vector<LabeledImage>& images, int side,
