@@ -88,6 +88,7 @@ void AddDetectCommand(CLI::App& app) {
   command->add_option("source", arguments->source, "image, folder, VOC data set or RGB-D sequence")
       ->required();
   arguments->detector.held = "any";
+  arguments->detector.mirrored = true;
   arguments->detector.AddForPictures(*command);
   command->add_option("--list", arguments->list_file,
                       "file that names the wanted images by their stems, one per line");

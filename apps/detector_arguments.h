@@ -7,6 +7,7 @@
 
 #include "apps/command.h"
 #include "detection/detector.h"
+#include "detection/mirror_average.h"
 #include "detection/turn_search.h"
 
 namespace msf {
@@ -15,8 +16,9 @@ struct DetectorArguments {
   DetectorOptions options;
   std::string size;  // WIDTHxHEIGHT, empty: the options' own
   std::string held = "upright";
+  bool mirrored = false;
 
-  // With the options for single pictures: how they were held, and which of two boxes counts.
+  // With the options for single pictures: how they are looked at, and which of two boxes counts.
   void AddForPictures(CLI::App& command) {
     AddTo(command);
     command
@@ -25,6 +27,9 @@ struct DetectorArguments {
                     "picture and the one that shows most is taken")
         ->capture_default_str()
         ->check(CLI::IsMember({"upright", "any"}));
+    command.add_flag("--mirrored,!--not-mirrored", mirrored,
+                     "look at each view also mirrored and average: twice the work (" +
+                         std::string(mirrored ? "default" : "default: not mirrored") + ")");
     command
         .add_option("--overlap-decay", options.overlap_decay,
                     "boxes that a better one of their class overlaps lose score by exp(-iou^2 / "
@@ -57,6 +62,7 @@ struct DetectorArguments {
       }
     }
     std::unique_ptr<Detector> detector = Require(MakeDetector(options));
+    if (mirrored) detector = std::make_unique<MirrorAverage>(std::move(detector), options.confidence);
     if (held == "upright") return detector;
     return std::make_unique<TurnSearch>(std::move(detector), options.confidence);
   }

@@ -64,6 +64,8 @@ class CompiledNetwork {
   // Convolutions that multiply 8-bit numbers, and all.
   int num_int8_convolutions() const { return num_int8_convolutions_; }
   int num_convolutions() const { return num_convolutions_; }
+  // The share of multiply-adds that are done in 8 bits, 0 to 1.
+  double int8_share() const { return num_products_ > 0 ? num_int8_products_ / num_products_ : 0; }
 
  private:
   friend class NetworkBuilder;
@@ -79,6 +81,7 @@ class CompiledNetwork {
   Block activations_, scratch_;
   size_t activation_bytes_ = 0;
   int num_convolutions_ = 0, num_int8_convolutions_ = 0;
+  double num_products_ = 0, num_int8_products_ = 0;  // of convolutions
   void* input_ = nullptr;
   std::vector<std::unique_ptr<Step>> steps_;
   std::vector<NetworkOutput> outputs_;

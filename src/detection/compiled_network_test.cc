@@ -145,6 +145,15 @@ TEST(CompiledNetworkInt8, PlainConvolutions) {
   ExpectInt8Agrees(AroundMiddle([](OnnxBuilder&, const std::string& x) { return x; }), 3);
 }
 
+TEST(CompiledNetworkInt8, CountsTheMultiplyAdds) {
+  CompileOptions options{64, 96, NetworkPrecision::kInt8};
+  const Graph graph = AroundMiddle([](OnnxBuilder&, const std::string& x) { return x; });
+  // Per pixel 3*16*9, 16*16*9 and 16*32*9 in 8 bits, 32*8 in the head.
+  EXPECT_NEAR(Compile(Calibrated(graph, options), options)->int8_share(), 7344 / 7600.0, 1e-9);
+  options.precision = NetworkPrecision::kFloat32;
+  EXPECT_EQ(Compile(graph, options)->int8_share(), 0);
+}
+
 TEST(CompiledNetworkInt8, OneByOneConvolution) {
   ExpectInt8Agrees(
       AroundMiddle([](OnnxBuilder& n, const std::string& x) { return n.ConvSilu(x, 16, 16, 1); }),

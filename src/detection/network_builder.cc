@@ -122,10 +122,20 @@ void NetworkBuilder::AddNode(size_t index) {
   }
 }
 
+void NetworkBuilder::CountConvolution(const Node& node, bool int8) {
+  const Shape& weights = value(node.inputs[1]).constant->shape;
+  const auto products = static_cast<double>(NumElements(value(node.outputs[0]).shape)) *
+                        static_cast<double>(NumElements(weights) / weights[0]);
+  ++network_.num_convolutions_;
+  network_.num_products_ += products;
+  if (!int8) return;
+  ++network_.num_int8_convolutions_;
+  network_.num_int8_products_ += products;
+}
+
 void NetworkBuilder::AddConvolution(const Node& node, NumberFormat compute) {
   const bool int8 = compute == NumberFormat::kUint8;
-  ++network_.num_convolutions_;
-  network_.num_int8_convolutions_ += int8;
+  CountConvolution(node, int8);
   ConvolutionSpec spec;
   spec.input_shape = value(node.inputs[0]).shape;
   spec.output_shape = value(node.outputs[0]).shape;

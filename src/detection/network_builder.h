@@ -48,6 +48,8 @@ class NetworkBuilder {
 
   void AddNode(size_t index);
   void AddConvolution(const Node& node, NumberFormat compute);
+  // Into the network's totals.
+  void CountConvolution(const Node& node, bool int8);
   void AddPool(const Node& node);
   void AddConcat(const Node& node);
   void AddSliceChannels(const Node& node);

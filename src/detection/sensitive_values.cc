@@ -52,7 +52,7 @@ class Search {
     if (!all.ok()) return all.status();
     SensitiveValues result{{}, all->error, all->error};
     if (MaxValues() == 0) return result;
-    StatusOr<std::vector<std::string>> candidates = FindCandidates(*all);
+    StatusOr<std::vector<std::string>> candidates = FindCandidates();
     if (!candidates.ok()) return candidates.status();
     while (result.names.size() < MaxValues()) {
       StatusOr<bool> added = AddBest(*candidates, result);
@@ -66,11 +66,11 @@ class Search {
  private:
   struct Scored {
     Scores scores;
-    int num_int8_convolutions = 0;
+    double int8_share = 0;
   };
   struct Trial {
     double error = 0;
-    int num_int8_convolutions = 0;
+    double share_left = 0;  // of the multiply-adds that could be done in 8 bits and are not
   };
 
   size_t MaxValues() const {
@@ -95,7 +95,7 @@ class Search {
       MSF_RETURN_IF_ERROR((*network)->Run());
       result.scores.push_back(decoder->Scores((*network)->outputs()));
     }
-    result.num_int8_convolutions = (*network)->num_int8_convolutions();
+    result.int8_share = (*network)->int8_share();
     return result;
   }
 
@@ -105,18 +105,20 @@ class Search {
     StatusOr<Scored> scored = Score(graph, NetworkPrecision::kInt8);
     if (!scored.ok()) return scored.status();
     progress_(++num_trials_, max_trials_);
-    return Trial{ScoreError(reference_, scored->scores), scored->num_int8_convolutions};
+    most_int8_ = std::max(most_int8_, scored->int8_share);  // the first trial's: all ranges
+    return Trial{ScoreError(reference_, scored->scores), most_int8_ - scored->int8_share};
   }
 
-  // Those that gain most alone, of the values whose range matters at all.
-  StatusOr<std::vector<std::string>> FindCandidates(const Trial& all) {
+  // Those that gain most alone, of the values whose range matters at all and that do not cost too
+  // much.
+  StatusOr<std::vector<std::string>> FindCandidates() {
     std::vector<std::pair<double, std::string>> ranked;
     for (const auto& [name, range] : ranges_) {
       ActivationRanges others = ranges_;
       others.erase(name);
       StatusOr<Trial> trial = Try(others);
       if (!trial.ok()) return trial.status();
-      if (trial->num_int8_convolutions < all.num_int8_convolutions)
+      if (trial->share_left > 0 && trial->share_left <= options_.max_share)
         ranked.emplace_back(trial->error, name);
     }
     std::sort(ranked.begin(), ranked.end());
@@ -131,19 +133,21 @@ class Search {
     ActivationRanges without = ranges_;
     for (const std::string& name : result.names) without.erase(name);
     std::string best;
-    double least = result.error_without * (1 - options_.min_gain);
+    double least = result.error_without * (1 - options_.min_gain), share = 0;
     for (const std::string& name : candidates) {
       ActivationRanges fewer = without;
       if (fewer.erase(name) == 0) continue;
       StatusOr<Trial> trial = Try(fewer);
       if (!trial.ok()) return trial.status();
-      if (trial->error >= least) continue;
+      if (trial->error >= least || trial->share_left > options_.max_share) continue;
       least = trial->error;
+      share = trial->share_left;
       best = name;
     }
     if (best.empty()) return false;
     result.names.push_back(best);
     result.error_without = least;
+    result.share = share;
     return true;
   }
 
@@ -155,6 +159,7 @@ class Search {
   const std::function<void(int, int)>& progress_;
   const int max_trials_;
   Scores reference_;
+  double most_int8_ = 0;
   int num_trials_ = 0;
 };
 

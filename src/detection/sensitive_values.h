@@ -12,9 +12,11 @@
 namespace msf {
 
 struct SensitivityOptions {
-  int max_values = 6;      // at most so many are named
-  double min_gain = 0.03;  // each lessens the error by at least this share of it
-  int max_images = 40;     // spread evenly over those given
+  int max_values = 6;       // at most so many are named
+  double max_share = 0.02;  // of the multiply-adds: at most so many leave 8 bits, since they take
+                            // about four times as long then
+  double min_gain = 0.03;   // each lessens the error by at least this share of it
+  int max_images = 40;      // spread evenly over those given
 };
 
 struct SensitiveValues {
@@ -23,6 +25,7 @@ struct SensitiveValues {
   // scores 0.05 or more: with all ranges, and without those of `names`.
   double error_with = 0;
   double error_without = 0;
+  double share = 0;  // of the multiply-adds of the network that leave 8 bits with `names`
 };
 
 // A value without a range stays in the higher precision, and so do the convolutions that read it.

@@ -45,9 +45,11 @@ TEST(FindSensitiveValues, NamesTheValueWhoseStepsAreTooCoarse) {
   }
   ASSERT_FALSE(spoiled.empty());
   ranges[spoiled].high *= 2000;
+  SensitivityOptions options;
+  options.max_share = 1;  // of few convolutions, each is much
   int done = 0, total = -1;
   const SensitiveValues found =
-      FindSensitiveValues(graph, ranges, kSize, SensitivityOptions(), kImages,
+      FindSensitiveValues(graph, ranges, kSize, options, kImages,
                           [&](int trials, int all) {
                             EXPECT_GE(trials, done);
                             done = trials;
@@ -70,6 +72,7 @@ TEST(FindSensitiveValues, NamesNoMoreThanWanted) {
   const Graph graph = TestGraph();
   const ActivationRanges ranges = Ranges(graph);
   SensitivityOptions options;
+  options.max_share = 1;
   options.max_values = 0;
   const auto find = [&] {
     return FindSensitiveValues(graph, ranges, kSize, options, kImages, [](int, int) {}).value();
@@ -81,6 +84,23 @@ TEST(FindSensitiveValues, NamesNoMoreThanWanted) {
   options.min_gain = 0;
   EXPECT_LE(find().names.size(), 2u);
   options.min_gain = 1;  // nothing gains so much
+  EXPECT_TRUE(find().names.empty());
+}
+
+TEST(FindSensitiveValues, SpendsNoMoreThanWanted) {
+  const Graph graph = TestGraph();
+  const ActivationRanges ranges = Ranges(graph);
+  SensitivityOptions options;
+  options.min_gain = -1;  // take whatever there is
+  const auto find = [&] {
+    return FindSensitiveValues(graph, ranges, kSize, options, kImages, [](int, int) {}).value();
+  };
+  options.max_share = 1;
+  const SensitiveValues most = find();
+  ASSERT_GT(most.share, 0);
+  options.max_share = 0.5 * most.share;
+  EXPECT_LE(find().share, options.max_share);
+  options.max_share = 0;
   EXPECT_TRUE(find().names.empty());
 }
 
