@@ -62,9 +62,11 @@ struct DetectorArguments {
       }
     }
     std::unique_ptr<Detector> detector = Require(MakeDetector(options));
-    if (mirrored) detector = std::make_unique<MirrorAverage>(std::move(detector), options.confidence);
-    if (held == "upright") return detector;
-    return std::make_unique<TurnSearch>(std::move(detector), options.confidence);
+    if (held == "any")
+      return std::make_unique<TurnSearch>(std::move(detector), options.confidence, mirrored);
+    if (mirrored)
+      return std::make_unique<MirrorAverage>(std::move(detector), options.confidence);
+    return detector;
   }
 };
 

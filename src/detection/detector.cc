@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <opencv2/core.hpp>
+
 #include "detection/onednn_detector.h"
 #include "detection/opencv_detector.h"
 #include "detection/turned_picture.h"
@@ -40,6 +42,7 @@ OverlapRule DetectorOptions::overlaps() const {
 }
 
 StatusOr<Detections> Detector::DetectTurned(const cv::Mat& image, double turn_rad) {
+  if (turn_rad == 0) return DetectInImage(image);
   if (image.empty()) return Status::Error("the image for the detector is empty");
   const TurnedPicture turned(image, turn_rad, input_size());
   StatusOr<Detections> detections = DetectInImage(turned.pixels());
@@ -49,9 +52,22 @@ StatusOr<Detections> Detector::DetectTurned(const cv::Mat& image, double turn_ra
   return detections;
 }
 
+StatusOr<Detections> Detector::DetectMirrored(const cv::Mat& image, double turn_rad) {
+  if (image.empty()) return Status::Error("the image for the detector is empty");
+  cv::Mat mirrored;
+  cv::flip(image, mirrored, 1);
+  StatusOr<Detections> detections = DetectTurned(mirrored, -turn_rad);
+  if (!detections.ok()) return detections;
+  const auto width = static_cast<float>(image.cols);
+  for (Detection& object : detections->objects) {
+    const ImageBox& box = object.box;
+    object.box = {width - box.x1, box.y0, width - box.x0, box.y1};
+  }
+  return detections;
+}
+
 StatusOr<Detections> Detector::Detect(const RgbdFrame& frame, double turn_rad) {
-  StatusOr<Detections> detections =
-      turn_rad == 0 ? DetectInImage(frame.color) : DetectTurned(frame.color, turn_rad);
+  StatusOr<Detections> detections = DetectTurned(frame.color, turn_rad);
   if (!detections.ok()) return detections;
   detections->frame = frame.id;
   detections->time_s = frame.time_s;

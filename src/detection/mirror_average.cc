@@ -1,15 +1,12 @@
 #include "detection/mirror_average.h"
 
 #include <algorithm>
-#include <opencv2/core.hpp>
 
 namespace msf {
 namespace {
 
 // Two boxes that overlap less are of two objects.
 constexpr float kLeastIou = 0.5F;
-// Of a single look: what is weaker does not change a mean that anybody looks at.
-constexpr double kLeastScore = 0.01;
 
 ImageBox Blend(const ImageBox& a, const ImageBox& b, float share_of_b) {
   const auto blend = [share_of_b](float x, float y) { return x + share_of_b * (y - x); };
@@ -64,19 +61,14 @@ MirrorAverage::MirrorAverage(std::unique_ptr<Detector> detector, double confiden
 
 void MirrorAverage::set_confidence(double confidence) {
   confidence_ = confidence;
-  detector_->set_confidence(std::min(confidence, kLeastScore));
+  detector_->set_confidence(std::min(confidence, kLeastAveragedScore));
 }
 
 StatusOr<Detections> MirrorAverage::DetectInImage(const cv::Mat& image) {
   StatusOr<Detections> found = detector_->DetectInImage(image);
   if (!found.ok()) return found;
-  cv::Mat mirrored;
-  cv::flip(image, mirrored, 1);
-  StatusOr<Detections> in_mirror = detector_->DetectInImage(mirrored);
+  StatusOr<Detections> in_mirror = detector_->DetectMirrored(image, 0);
   if (!in_mirror.ok()) return in_mirror;
-  const auto width = static_cast<float>(image.cols);
-  for (Detection& d : in_mirror->objects)
-    d.box = {width - d.box.x1, d.box.y0, width - d.box.x0, d.box.y1};
   found->objects = AverageDetections(found->objects, std::move(in_mirror->objects));
   std::erase_if(found->objects, [this](const Detection& d) { return d.score < confidence_; });
   return found;

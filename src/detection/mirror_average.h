@@ -14,6 +14,9 @@ namespace msf {
 std::vector<Detection> AverageDetections(const std::vector<Detection>& first,
                                          std::vector<Detection> second);
 
+// Of a single look: what is weaker does not change a mean that anybody looks at.
+inline constexpr double kLeastAveragedScore = 0.01;
+
 // Looks at each image and at its mirror image (2 passes of the network) and averages. A network
 // errs differently on the two, so objects are found that a single look ranks below what is none.
 class MirrorAverage : public Detector {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "detection/mirror_average.h"
+
 namespace msf {
 namespace {
 
@@ -13,9 +15,6 @@ constexpr float kLeastEvidence = 0.2f;
 // What another view has to show beyond the upright one, since most pictures are upright: about one
 // object more that is found with some certainty.
 constexpr double kTurnedMargin = 0.4;
-
-// Of the detections that are reported and those that speak for a view.
-double LeastWanted(double confidence) { return std::min<double>(confidence, kLeastEvidence); }
 
 double EvidenceOf(const Detections& detections) {
   double sum = 0;
@@ -27,32 +26,49 @@ double EvidenceOf(const Detections& detections) {
 
 }  // namespace
 
-TurnSearch::TurnSearch(std::unique_ptr<Detector> detector, double confidence)
+TurnSearch::TurnSearch(std::unique_ptr<Detector> detector, double confidence, bool mirrored)
     : Detector(detector->class_names(), detector->input_size(),
-               fmt::format("{}, {} ways up", detector->description(), std::size(kTurns_deg) + 1)),
+               fmt::format("{}, {} ways up{}", detector->description(), std::size(kTurns_deg) + 1,
+                           mirrored ? ", also mirrored" : "")),
       detector_(std::move(detector)),
-      confidence_(confidence) {
-  detector_->set_confidence(LeastWanted(confidence));
+      mirrored_(mirrored) {
+  set_confidence(confidence);
 }
 
 void TurnSearch::set_confidence(double confidence) {
   confidence_ = confidence;
-  detector_->set_confidence(LeastWanted(confidence));
+  // Weaker ones than are reported speak for a view and count in averages.
+  detector_->set_confidence(
+      std::min(confidence, mirrored_ ? kLeastAveragedScore : double{kLeastEvidence}));
 }
 
 StatusOr<Detections> TurnSearch::DetectInImage(const cv::Mat& image) {
-  StatusOr<Detections> best = detector_->DetectInImage(image);
-  if (!best.ok()) return best;
-  double most = EvidenceOf(*best) + kTurnedMargin;
+  StatusOr<View> view = FindView(image);
+  if (!view.ok()) return view.status();
+  Detections found = std::move(view->detections);
+  if (mirrored_) {
+    StatusOr<Detections> in_mirror = detector_->DetectMirrored(image, view->turn_rad);
+    if (!in_mirror.ok()) return in_mirror;
+    found.objects = AverageDetections(found.objects, std::move(in_mirror->objects));
+  }
+  std::erase_if(found.objects, [this](const Detection& d) { return d.score < confidence_; });
+  return found;
+}
+
+StatusOr<TurnSearch::View> TurnSearch::FindView(const cv::Mat& image) {
+  StatusOr<Detections> upright = detector_->DetectInImage(image);
+  if (!upright.ok()) return upright.status();
+  View best{0, *std::move(upright)};
+  double most = EvidenceOf(best.detections) + kTurnedMargin;
   for (const double turn_deg : kTurns_deg) {
-    StatusOr<Detections> turned = detector_->DetectTurned(image, turn_deg * CV_PI / 180);
-    if (!turned.ok()) return turned;
+    const double turn_rad = turn_deg * CV_PI / 180;
+    StatusOr<Detections> turned = detector_->DetectTurned(image, turn_rad);
+    if (!turned.ok()) return turned.status();
     const double evidence = EvidenceOf(*turned);
     if (evidence <= most) continue;
     most = evidence;
-    best = std::move(turned);
+    best = {turn_rad, *std::move(turned)};
   }
-  std::erase_if(best->objects, [this](const Detection& d) { return d.score < confidence_; });
   return best;
 }
 

@@ -25,8 +25,8 @@ class HeadFinder : public Detector {
     const auto score =
         static_cast<float>(-up.y / std::max(1.0, std::hypot(up.x, up.y)) * certainty);
     const cv::Rect box = cv::boundingRect(std::vector<cv::Point>{bright, dark});
-    const ImageBox padded{static_cast<float>(box.x) - 3, static_cast<float>(box.y) - 3,
-                          static_cast<float>(box.br().x) + 3, static_cast<float>(box.br().y) + 3};
+    const ImageBox padded{static_cast<float>(box.x) - 12, static_cast<float>(box.y) - 12,
+                          static_cast<float>(box.br().x) + 12, static_cast<float>(box.br().y) + 12};
     if (score >= confidence) found.objects.push_back({0, score, padded});
     return found;
   }
@@ -51,10 +51,10 @@ cv::Mat Person(double degrees) {
 }
 
 struct Search {
-  explicit Search(double confidence) {
+  explicit Search(double confidence, bool mirrored = false) {
     auto finder = std::make_unique<HeadFinder>();
     inner = finder.get();
-    search = std::make_unique<TurnSearch>(std::move(finder), confidence);
+    search = std::make_unique<TurnSearch>(std::move(finder), confidence, mirrored);
   }
   HeadFinder* inner;
   std::unique_ptr<TurnSearch> search;
@@ -72,6 +72,18 @@ TEST(TurnSearch, FindsPeopleHoweverTheCameraWasHeld) {
     EXPECT_TRUE(found.objects[0].box.Contains(static_cast<float>(100 + 25 * std::sin(angle)),
                                               static_cast<float>(80 - 25 * std::cos(angle))))
         << degrees;
+  }
+}
+
+TEST(TurnSearch, TheViewThatShowsMostIsAveragedWithItsMirrorImage) {
+  for (const double degrees : {0, 50, 90}) {
+    const Search once(0.25), twice(0.25, true);
+    const Detections one = once.search->DetectInImage(Person(degrees)).value();
+    const Detections mean = twice.search->DetectInImage(Person(degrees)).value();
+    EXPECT_EQ(twice.inner->passes, 8);
+    ASSERT_EQ(mean.objects.size(), 1u) << degrees;
+    EXPECT_NEAR(mean.objects[0].score, one.objects[0].score, 0.03) << degrees;
+    EXPECT_GT(IntersectionOverUnion(mean.objects[0].box, one.objects[0].box), 0.75F) << degrees;
   }
 }
 
