@@ -168,6 +168,15 @@ torch::Tensor FeatureDistance(const ModelGraph& student,
   return errors.empty() ? torch::zeros({}) : torch::stack(errors).mean();
 }
 
+void AverageClassesWithMirror(const Network& network, std::vector<torch::Tensor>& values) {
+  constexpr int64_t kColumns = 3;
+  std::vector<torch::Tensor> mirrored(values.size());
+  mirrored[0] = values[0].flip(kColumns).contiguous(torch::MemoryFormat::ChannelsLast);
+  network.RunNodes(1, static_cast<int>(mirrored.size()), mirrored);
+  for (const int head : network.graph().class_heads)
+    values[head] = (values[head] + mirrored[head].flip(kColumns)) / 2;
+}
+
 torch::Tensor ClassDistance(const HeadOutputs& student, const HeadOutputs& teacher,
                             const torch::Tensor& angles) {
   constexpr double kNothing = -10.0;

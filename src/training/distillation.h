@@ -51,6 +51,10 @@ torch::Tensor FeatureDistance(const ModelGraph& student,
                               const std::vector<torch::Tensor>& teacher_values,
                               const torch::Tensor& pictures);
 
+// Replaces the class logits among a network's `values` for some pictures by the mean of these and
+// of what it gives for the mirror images: errs less than either (see detection/mirror_average.h).
+void AverageClassesWithMirror(const Network& network, std::vector<torch::Tensor>& values);
+
 // Distance of a student's class logits to its teacher's: squared error over variance, weighted by
 // the teacher's scores, mean over the scales. Keeps what the teacher knows of classes that the
 // training images hardly show. `angles` ([batch], radians): by how much the student's pictures were

@@ -207,5 +207,24 @@ TEST(FeatureDistanceTest, CountsHowFarTheLayersOfTheChosenPicturesAre) {
   EXPECT_EQ(distance(torch::empty({0}, torch::kLong)), 0);
 }
 
+// Averaged logits are those of the mirror image, mirrored; nothing else changes.
+TEST(AverageClassesWithMirrorTest, MirrorImagesGetMirroredLogits) {
+  Network network(BuildModelGraph(SmallConfig("none")), 1);
+  Enliven(network);
+  const torch::NoGradGuard no_grad;
+  torch::manual_seed(6);
+  const torch::Tensor images = torch::rand({2, 3, 64, 64});
+  const std::vector<torch::Tensor> once = ValuesOf(network, images);
+  std::vector<torch::Tensor> values = once, mirrored = ValuesOf(network, images.flip(3));
+  AverageClassesWithMirror(network, values);
+  AverageClassesWithMirror(network, mirrored);
+  for (size_t i = 0; i < network.graph().class_heads.size(); ++i) {
+    const int head = network.graph().class_heads[i], box = network.graph().box_heads[i];
+    EXPECT_TRUE(values[head].allclose(mirrored[head].flip(3), 1e-4, 1e-4));
+    EXPECT_FALSE(values[head].allclose(once[head], 1e-4, 1e-4));
+    EXPECT_TRUE(values[box].equal(once[box]));
+  }
+}
+
 }  // namespace
 }  // namespace msf

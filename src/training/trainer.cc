@@ -207,6 +207,7 @@ Trainer::Distances Trainer::Imitate(const std::vector<torch::Tensor>& values,
     wanted[0] = (options_.imitate_turned ? TurnMaps(images, angles, kGrey) : images)
                     .contiguous(torch::MemoryFormat::ChannelsLast);
     teacher_->RunNodes(1, static_cast<int>(wanted.size()), wanted);
+    if (options_.imitate_mirrored) AverageClassesWithMirror(*teacher_, wanted);
   }
   std::vector<torch::Tensor> given(values.size());
   const ModelGraph& graph = network_.graph();

@@ -34,6 +34,7 @@ struct TrainOptions {
   double imitation = 2.0;
   double feature_imitation = 0.0;
   bool imitate_turned = false;
+  bool imitate_mirrored = false;
   double average_decay = 0.998;
   double average_ramp = 200.0;
   int validation_images = 100;
@@ -71,6 +72,8 @@ struct TrainOptions {
           "weight of the distance to that network's layers on upright pictures");
     visit("imitate_turned", imitate_turned,
           "that distance counts on rotated pictures, too, which that network sees upright");
+    visit("imitate_mirrored", imitate_mirrored,
+          "the class logits to imitate are the mean over the picture and its mirror image");
     visit("average_decay", average_decay,
           "decay of the moving average of weights that is kept in the end");
     visit("average_ramp", average_ramp, "updates over which that decay rises");
