@@ -1,6 +1,8 @@
 // Command-line options that choose and set up a detector.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,8 +30,9 @@ struct DetectorArguments {
         ->capture_default_str()
         ->check(CLI::IsMember({"upright", "any"}));
     command.add_flag("--mirrored,!--not-mirrored", mirrored,
-                     "look at each view also mirrored and average: twice the work (" +
-                         std::string(mirrored ? "default" : "default: not mirrored") + ")");
+                     fmt::format("look a second time, in the mirror, and average what both looks "
+                                 "show (default: {})",
+                                 mirrored ? "yes" : "no"));
     command
         .add_option("--overlap-decay", options.overlap_decay,
                     "boxes that a better one of their class overlaps lose score by exp(-iou^2 / "
