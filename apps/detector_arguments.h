@@ -67,8 +67,7 @@ struct DetectorArguments {
     std::unique_ptr<Detector> detector = Require(MakeDetector(options));
     if (held == "any")
       return std::make_unique<TurnSearch>(std::move(detector), options.confidence, mirrored);
-    if (mirrored)
-      return std::make_unique<MirrorAverage>(std::move(detector), options.confidence);
+    if (mirrored) return std::make_unique<MirrorAverage>(std::move(detector), options.confidence);
     return detector;
   }
 };

@@ -68,8 +68,8 @@ class Detector {
   // (TurnedPicture).
   StatusOr<Detections> DetectTurned(const cv::Mat& image, double turn_rad);
 
-  // The same for the mirror image (left and right exchanged) of the image that was turned. Boxes, too,
-  // are those of `image`.
+  // The same for the mirror image (left and right exchanged) of the image that was turned. Boxes,
+  // too, are those of `image`.
   StatusOr<Detections> DetectMirrored(const cv::Mat& image, double turn_rad);
 
   // The colour image of a frame, turned if need be; the result carries the frame's id and time.

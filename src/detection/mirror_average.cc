@@ -27,8 +27,7 @@ Detection SeenOnce(Detection d) {
 // overlaps most: that may be a weak second box of the same object.
 std::vector<Detection>::iterator FindSame(std::vector<Detection>& others, const Detection& d) {
   return std::find_if(others.begin(), others.end(), [&d](const Detection& other) {
-    return other.class_id == d.class_id &&
-           IntersectionOverUnion(other.box, d.box) >= kLeastIou;
+    return other.class_id == d.class_id && IntersectionOverUnion(other.box, d.box) >= kLeastIou;
   });
 }
 

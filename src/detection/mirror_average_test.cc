@@ -10,8 +10,8 @@ namespace {
 
 TEST(AverageDetections, JoinsWhatOverlapsAndHalvesWhatWasSeenOnce) {
   const ImageBox box{10, 10, 30, 50}, nearby{12, 10, 32, 50}, elsewhere{60, 10, 90, 50};
-  const std::vector<Detection> averaged =
-      AverageDetections({{0, 0.6F, box}, {1, 0.3F, box}}, {{0, 0.9F, elsewhere}, {0, 0.2F, nearby}});
+  const std::vector<Detection> averaged = AverageDetections(
+      {{0, 0.6F, box}, {1, 0.3F, box}}, {{0, 0.9F, elsewhere}, {0, 0.2F, nearby}});
   ASSERT_EQ(averaged.size(), 3u);
   EXPECT_FLOAT_EQ(averaged[0].score, 0.45F) << "half, but still the best";
   EXPECT_FLOAT_EQ(averaged[0].box.x0, 60);
@@ -47,7 +47,8 @@ class LeftFinder : public Detector {
     const float score = box.x + box.width / 2 < image.cols / 2 ? 0.9F : 0.5F;
     Detections found;
     if (score >= confidence)
-      found.objects.push_back({0, score,
+      found.objects.push_back({0,
+                               score,
                                {static_cast<float>(box.x), static_cast<float>(box.y),
                                 static_cast<float>(box.br().x), static_cast<float>(box.br().y)}});
     return found;

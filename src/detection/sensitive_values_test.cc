@@ -49,13 +49,11 @@ TEST(FindSensitiveValues, NamesTheValueWhoseStepsAreTooCoarse) {
   options.max_share = 1;  // of few convolutions, each is much
   int done = 0, total = -1;
   const SensitiveValues found =
-      FindSensitiveValues(graph, ranges, kSize, options, kImages,
-                          [&](int trials, int all) {
-                            EXPECT_GE(trials, done);
-                            done = trials;
-                            total = all;
-                          })
-          .value();
+      FindSensitiveValues(graph, ranges, kSize, options, kImages, [&](int trials, int all) {
+        EXPECT_GE(trials, done);
+        done = trials;
+        total = all;
+      }).value();
   ASSERT_FALSE(found.names.empty());
   // Pieces of one concatenation share their steps, so that its name may be that of a neighbour.
   ActivationRanges without = ranges;

@@ -11,8 +11,8 @@ namespace msf {
 // (7 passes of the network) and reports what it finds in the view that shows most: upright, unless
 // another one is clearly better. A picture has one camera and so one turn; boxes of several views
 // put together would be wrong more often. With `mirrored` that view is looked at a second time, in
-// the mirror (mirror_average.h), and what is reported is the average. Sequences need no search: tracking knows how the camera
-// is rolled (tracking/camera_roll.h).
+// the mirror (mirror_average.h), and what is reported is the average. Sequences need no search:
+// tracking knows how the camera is rolled (tracking/camera_roll.h).
 class TurnSearch : public Detector {
  public:
   // `confidence`: as in DetectorOptions.
