@@ -55,7 +55,7 @@ MirrorAverage::MirrorAverage(std::unique_ptr<Detector> detector, double confiden
     : Detector(detector->class_names(), detector->input_size(),
                detector->description() + ", also mirrored"),
       detector_(std::move(detector)) {
-  set_confidence(confidence);
+  MirrorAverage::set_confidence(confidence);
 }
 
 void MirrorAverage::set_confidence(double confidence) {

@@ -29,7 +29,7 @@ class MirrorAverage : public Detector {
 
  private:
   const std::unique_ptr<Detector> detector_;
-  double confidence_;
+  double confidence_ = 0;
 };
 
 }  // namespace msf

@@ -124,8 +124,9 @@ void NetworkBuilder::AddNode(size_t index) {
 
 void NetworkBuilder::CountConvolution(const Node& node, bool int8) {
   const Shape& weights = value(node.inputs[1]).constant->shape;
-  const auto products = static_cast<double>(NumElements(value(node.outputs[0]).shape)) *
-                        static_cast<double>(NumElements(weights) / weights[0]);
+  const int64_t products_per_number = NumElements(weights) / weights[0];
+  const auto products =
+      static_cast<double>(NumElements(value(node.outputs[0]).shape) * products_per_number);
   ++network_.num_convolutions_;
   network_.num_products_ += products;
   if (!int8) return;

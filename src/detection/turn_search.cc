@@ -32,7 +32,7 @@ TurnSearch::TurnSearch(std::unique_ptr<Detector> detector, double confidence, bo
                            mirrored ? ", also mirrored" : "")),
       detector_(std::move(detector)),
       mirrored_(mirrored) {
-  set_confidence(confidence);
+  TurnSearch::set_confidence(confidence);
 }
 
 void TurnSearch::set_confidence(double confidence) {

@@ -30,7 +30,7 @@ class TurnSearch : public Detector {
 
   const std::unique_ptr<Detector> detector_;
   const bool mirrored_;
-  double confidence_;
+  double confidence_ = 0;
 };
 
 }  // namespace msf
