@@ -10,7 +10,8 @@ namespace msf {
 
 // What two looks at one image found, averaged: detections of one class that overlap are one object,
 // with the mean of their scores and, weighted by these, of their boxes; what only one look found
-// keeps half its score. Each detection joins at most one, the better ones choose first. Best first.
+// keeps half its score. Each detection joins at most one, the better ones choose first. Both lists
+// and the result: best first.
 std::vector<Detection> AverageDetections(const std::vector<Detection>& first,
                                          std::vector<Detection> second);
 
