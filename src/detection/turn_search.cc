@@ -10,6 +10,8 @@ namespace msf {
 namespace {
 
 constexpr double kTurns_deg[] = {30, -30, 60, -60, 90, -90};
+// Then on both sides of the best of these views.
+constexpr double kFineTurns_deg[] = {-15, 15};
 // Weaker detections say nothing about which way is up.
 constexpr float kLeastEvidence = 0.2f;
 // What another view has to show beyond the upright one, since most pictures are upright: about one
@@ -28,7 +30,8 @@ double EvidenceOf(const Detections& detections) {
 
 TurnSearch::TurnSearch(std::unique_ptr<Detector> detector, double confidence, bool mirrored)
     : Detector(detector->class_names(), detector->input_size(),
-               fmt::format("{}, {} ways up{}", detector->description(), std::size(kTurns_deg) + 1,
+               fmt::format("{}, {} ways up{}", detector->description(),
+                           std::size(kTurns_deg) + std::size(kFineTurns_deg) + 1,
                            mirrored ? ", also mirrored" : "")),
       detector_(std::move(detector)),
       mirrored_(mirrored) {
@@ -60,15 +63,20 @@ StatusOr<TurnSearch::View> TurnSearch::FindView(const cv::Mat& image) {
   if (!upright.ok()) return upright.status();
   View best{0, *std::move(upright)};
   double most = EvidenceOf(best.detections) + kTurnedMargin;
-  for (const double turn_deg : kTurns_deg) {
+  const auto try_turn = [&](double turn_deg) -> Status {
     const double turn_rad = turn_deg * CV_PI / 180;
     StatusOr<Detections> turned = detector_->DetectTurned(image, turn_rad);
     if (!turned.ok()) return turned.status();
     const double evidence = EvidenceOf(*turned);
-    if (evidence <= most) continue;
-    most = evidence;
-    best = {turn_rad, *std::move(turned)};
-  }
+    if (evidence > most) {
+      most = evidence;
+      best = {turn_rad, *std::move(turned)};
+    }
+    return Status::Ok();
+  };
+  for (const double turn_deg : kTurns_deg) MSF_RETURN_IF_ERROR(try_turn(turn_deg));
+  const double coarse_deg = best.turn_rad * 180 / CV_PI;
+  for (const double fine_deg : kFineTurns_deg) MSF_RETURN_IF_ERROR(try_turn(coarse_deg + fine_deg));
   return best;
 }
 

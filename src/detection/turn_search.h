@@ -7,12 +7,13 @@
 
 namespace msf {
 
-// Looks at a picture upright and turned in steps of 30 degrees up to a quarter turn to either side
-// (7 passes of the network) and reports what it finds in the view that shows most: upright, unless
-// another one is clearly better. A picture has one camera and so one turn; boxes of several views
-// put together would be wrong more often. With `mirrored` that view is looked at a second time, in
-// the mirror (mirror_average.h), and what is reported is the average. Sequences need no search:
-// tracking knows how the camera is rolled (tracking/camera_roll.h).
+// Looks at a picture upright and turned in steps of 30 degrees up to a quarter turn to either side,
+// then 15 degrees to both sides of the best of these views (9 passes of the network), and reports
+// what it finds in the view that shows most: upright, unless another one is clearly better. A
+// picture has one camera and so one turn; boxes of several views put together would be wrong more
+// often. With `mirrored` that view is looked at a second time, in the mirror (mirror_average.h),
+// and what is reported is the average. Sequences need no search: tracking knows how the camera is
+// rolled (tracking/camera_roll.h).
 class TurnSearch : public Detector {
  public:
   // `confidence`: as in DetectorOptions.
