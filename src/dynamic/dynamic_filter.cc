@@ -286,6 +286,18 @@ void DynamicFilter::TestSlowMotions(Work& work) const {
 
 // --- Labels
 
+namespace {
+
+// Cells that are at most `reach_px` away from those of the mask.
+cv::Mat1b Surroundings(const cv::Mat1b& mask, double reach_px) {
+  if (cv::countNonZero(mask) == 0) return mask;
+  cv::Mat1f distance;
+  cv::distanceTransform(mask == 0, distance, cv::DIST_L2, cv::DIST_MASK_3);
+  return distance <= reach_px / CoarseDepth::kCellSize;
+}
+
+}  // namespace
+
 // Nothing covers most of the image, unless it is seen to move.
 bool DynamicFilter::IsCredible(const ObjectTrack& track) const {
   if (MaskShare(track) > options_.mask.max_image_share) return false;
@@ -306,13 +318,16 @@ bool DynamicFilter::CoversImage(const ObjectTrack& track) const {
 void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
   result.mask = cv::Mat1b(work.view.depth.rows(), work.view.depth.cols(), static_cast<uint8_t>(0));
   cv::Mat1b settled = result.mask.clone(), movers = result.mask.clone();
+  cv::Mat1b unconfirmed = result.mask.clone();
   for (const ObjectTrack& track : tracks_.tracks()) {
     if (track.mask.empty() || !IsCredible(track)) continue;
     if (track.Removes()) result.mask |= track.mask.cells;
     if (track.Removes() && track.kind == ObjectKind::kUnknown) movers |= track.mask.cells;
+    if (!track.Removes() && track.kind == ObjectKind::kUnknown) unconfirmed |= track.mask.cells;
     if (track.kind == ObjectKind::kKnown && track.state == MotionState::kStatic)
       settled |= track.mask.cells;
   }
+  const cv::Mat1b near_objects = Surroundings(result.mask | unconfirmed, options_.suspect_reach_px);
   for (const int i : work.all) {
     const Eigen::Vector2f& px = work.features.image_px[i];
     const cv::Point cell = work.view.depth.CellOf(px.x(), px.y());
@@ -321,6 +336,10 @@ void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
       const bool is_still = work.motion[i] == PointMotion::kStatic && !Moves(work.slow_motion[i]) &&
                             movers(cell) == 0;
       result.labels.Set(i, PointReason::kObject, is_still ? kStillOnObject : kOnObject);
+    } else if (result.camera_motion_reliable && work.motion[i] == PointMotion::kMovesSideways &&
+               near_objects(cell) == 0) {
+      // Flow errs now and then: what moves alone is rather a point that was followed badly.
+      result.labels.Set(i, PointReason::kReadmitted, DoubtfulWeight());
     } else if (result.camera_motion_reliable && Moves(work.motion[i])) {
       const PointReason reason =
           work.motion[i] == PointMotion::kMovesInDepth ? PointReason::kDepth : PointReason::kFlow;
@@ -335,6 +354,11 @@ void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
     probability = probability < static_cast<float>(options_.min_static_probability) ? 0.0f : 1.0f;
 }
 
+// Of suspicious points that are used all the same.
+float DynamicFilter::DoubtfulWeight() const {
+  return std::max(kReadmittedWeight, static_cast<float>(options_.min_static_probability));
+}
+
 // Rather than losing track: those that do not move themselves first, and never those that do.
 void DynamicFilter::ReadmitPoints(const Work& work, DynamicResult& result) const {
   const PointLabels& labels = result.labels;
@@ -344,13 +368,11 @@ void DynamicFilter::ReadmitPoints(const Work& work, DynamicResult& result) const
   int missing = options_.min_static_features -
                 static_cast<int>(std::count_if(work.all.begin(), work.all.end(), used));
   if (missing <= 0) return;
-  const float weight =
-      std::max(kReadmittedWeight, static_cast<float>(options_.min_static_probability));
   for (const PointMotion wanted : {PointMotion::kStatic, PointMotion::kUntested}) {
     for (const int i : work.all) {
       if (missing == 0) return;
       if (used(i) || work.motion[i] != wanted || Moves(work.slow_motion[i])) continue;
-      result.labels.Set(i, PointReason::kReadmitted, weight);
+      result.labels.Set(i, PointReason::kReadmitted, DoubtfulWeight());
       --missing;
     }
   }

@@ -117,6 +117,7 @@ class DynamicFilter {
   bool CoversImage(const ObjectTrack& track) const;
   void LabelPoints(const Work& work, DynamicResult& result) const;
   void ReadmitPoints(const Work& work, DynamicResult& result) const;
+  float DoubtfulWeight() const;
   void Describe(const Work& work, DynamicResult& result) const;
   cv::Mat1b Doubtful(const Work& work, const DynamicResult& result) const;
   void Remember(Work& work, const DynamicResult& result);

@@ -295,6 +295,28 @@ TEST(DynamicFilterFull, AMoverOfUnknownClassIsFound) {
   }
 }
 
+// A small piece of the wall's surface that moves: too few points to make a mover of them.
+void AddSpeck(const cv::Rect& px, RgbdFrame& frame) {
+  static const cv::Mat kSpeck = MakeTexture(13);
+  kSpeck(cv::Rect({0, 0}, px.size())).copyTo(frame.color(px));
+}
+
+TEST(DynamicFilterFull, FewPointsThatMoveAreRemovedOnlyBesideAnObject) {
+  const cv::Rect beside(kThing_px.br().x + 16, 204, 24, 24), far_away(60, 204, 24, 24);
+  const auto filter = MakeFilter(Mode("full"));
+  for (int i = 0; i < 3; ++i) {
+    RgbdFrame frame = TexturedFrame(i, 0.1 * i, 0, kThing_px);
+    for (const cv::Rect& px : {beside, far_away}) AddSpeck(Shifted(px, 8 * i), frame);
+    const Detections found = Found(i, {{kPerson, 0.9f, BoxOf(kThing_px)}});
+    const Seen seen = Classify(*filter, frame, &found);
+    if (i == 0) continue;
+    const ImageBox near_box = BoxOf(Shifted(beside, 8 * i)),
+                   far_box = BoxOf(Shifted(far_away, 8 * i));
+    EXPECT_EQ(seen.ShareOf(PointReason::kFlow, near_box), 1) << i;
+    EXPECT_EQ(seen.ShareOf(PointReason::kReadmitted, far_box), 1) << i;
+  }
+}
+
 TEST(DynamicFilterFull, WhatHasComeInIsRemovedThoughItStandsStillNow) {
   const auto filter = MakeFilter(Mode("full"));
   for (int i = 0; i < 10; ++i) Classify(*filter, TexturedFrame(i, 0.1 * i, 0));

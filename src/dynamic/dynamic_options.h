@@ -100,7 +100,7 @@ struct ObjectMaskOptions {
   double box_margin = 0.1;
   double mover_margin = 0.3;
   int grow_px = 0;
-  int grow_without_depth_px = 8;
+  int grow_without_depth_px = 4;
   double min_depth_share = 0.15;
   double near_depth_share = 0.5;
   double max_image_share = 0.9;
@@ -205,6 +205,7 @@ struct DynamicOptions {
   bool unknown_movers = true;
   int min_static_features = 100;
   double min_static_probability = 0.3;
+  double suspect_reach_px = 48;
   double max_feature_factor = 1.6;
   int history_frames = 16;
   MotionTestOptions motion;
@@ -236,6 +237,10 @@ struct DynamicOptions {
           "with fewer static points the least suspicious others are readmitted");
     visit("min_static_probability", min_static_probability,
           "points less likely static are not used");
+    visit(
+        "suspect_reach_px", suspect_reach_px,
+        "a point whose flow disagrees is removed only so near to an object that is removed or may "
+        "be; elsewhere it is used with little weight, px");
     visit("max_feature_factor", max_feature_factor,
           "so many times the points are extracted at most where masks cover the image");
     visit("history_frames", history_frames, "images kept, to place late detections");

@@ -16,7 +16,7 @@ enum class PointReason : uint8_t {
   kFlow,        // its flow does not follow the camera's motion
   kDepth,       // its depth does not
   kSettled,     // on an object that has come to rest: used with reduced weight
-  kReadmitted,  // suspicious, used with little weight because too few others are left
+  kReadmitted,  // suspicious, but used with little weight: alone in it, or too few others are left
   kKnown,       // suspicious, but where the map has a static point that looks like it
 };
 constexpr int kNumPointReasons = 8;
