@@ -58,10 +58,10 @@ void AddDetectorExportCommand(CLI::App& app) {
   CLI::App* command =
       DetectorCommand(app)->add_subcommand("export", "Write trained weights as an ONNX file");
   const auto arguments = std::make_shared<ExportArguments>();
-  command->add_option(
-      "--model", arguments->model,
-      "yolov8n, yolov8n_msf, yolov8n_msf_wide, yolov8n_fpn, yolov8n_hrnet, yolov8n_coco or a YAML "
-      "file");
+  command->add_option("--model", arguments->model,
+                      "yolov8n, yolov8n_msf, yolov8n_msf_wide, yolov8n_msf_full, yolov8n_fpn, "
+                      "yolov8n_hrnet, yolov8n_coco or a YAML "
+                      "file");
   command
       ->add_option("--weights", arguments->weights,
                    "weights.pt of a training, an ONNX file exported here, or COCO weights")

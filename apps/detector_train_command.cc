@@ -94,9 +94,9 @@ void AddDetectorTrainCommand(CLI::App& app) {
   const auto arguments = std::make_shared<TrainArguments>();
   command->add_option("--data", arguments->data, "VOC folders, ROOT (its trainval set) or ROOT:SET")
       ->required();
-  command->add_option(
-      "--model", arguments->model,
-      "yolov8n, yolov8n_msf, yolov8n_msf_wide, yolov8n_fpn, yolov8n_hrnet or a YAML file");
+  command->add_option("--model", arguments->model,
+                      "yolov8n, yolov8n_msf, yolov8n_msf_wide, yolov8n_msf_full, yolov8n_fpn, "
+                      "yolov8n_hrnet or a YAML file");
   command->add_option(
       "--init", arguments->init,
       "weights to start from (YOLOv8n of 80 COCO classes, or of an earlier training), as .pt or as "

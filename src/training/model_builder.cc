@@ -11,10 +11,7 @@ namespace {
 // Puts the layers of a YOLOv8n-style detector into a graph.
 class DetectorBuilder {
  public:
-  explicit DetectorBuilder(const ModelConfig& config)
-      : config_(config),
-        shape_{config.msf_width, config.msf_kernels, config.msf_standard_kernel},
-        build_(graph_) {
+  explicit DetectorBuilder(const ModelConfig& config) : config_(config), build_(graph_) {
     graph_.name = config.name;
     graph_.classes = config.classes;
   }
@@ -36,8 +33,10 @@ class DetectorBuilder {
   // A stand-alone stride-2 convolution, which is what MSFConv replaces.
   int Down(int input, int channels) {
     const int layer = static_cast<int>(graph_.layers.size());
-    return config_.HasMsfConvAt(layer) ? MsfConvLayer(build_, input, channels, shape_)
-                                       : ConvLayer(build_, input, channels, 3, 2);
+    const std::optional<double> msf_width = config_.MsfWidthAt(layer);
+    if (!msf_width) return ConvLayer(build_, input, channels, 3, 2);
+    return MsfConvLayer(build_, input, channels,
+                        {*msf_width, config_.msf_kernels, config_.msf_standard_kernel});
   }
 
   Pyramid Backbone(int image) {
@@ -90,7 +89,6 @@ class DetectorBuilder {
   }
 
   const ModelConfig& config_;
-  MsfConvShape shape_;
   ModelGraph graph_;
   GraphBuilder build_;
 };

@@ -33,6 +33,9 @@ TEST(ModelConfigTest, SizesAgreeWithThePaper) {
   const ModelGraph wide = Build("yolov8n_msf_wide");
   EXPECT_NEAR(static_cast<double>(CountParameters(wide)), 3.19e6, 0.01 * 3.19e6);
   EXPECT_NEAR(CountFlops(wide, 640, 640) * 1e-9, 8.9, 0.01 * 8.9);
+  const ModelGraph full = Build("yolov8n_msf_full");
+  EXPECT_NEAR(static_cast<double>(CountParameters(full)), 3.19e6, 0.01 * 3.19e6);
+  EXPECT_NEAR(CountFlops(full, 640, 640) * 1e-9, 8.9, 0.01 * 8.9);
 }
 
 TEST(ModelConfigTest, CocoHeadHasItsKnownSize) {
@@ -65,9 +68,20 @@ TEST(ModelConfigTest, PlacementDecidesWhichConvolutionsBecomeMsfConv) {
   EXPECT_EQ(graph.layers[19].type, "MSFConv");
 }
 
+TEST(ModelConfigTest, PlacementMayGiveWidths) {
+  ModelConfig config = *LoadModelConfig("yolov8n");
+  config.msf_placement = "3:1, 16, 19:0.75";
+  ASSERT_TRUE(config.Check().ok()) << config.Check().message();
+  EXPECT_EQ(config.MsfWidthAt(3), 1.0);
+  EXPECT_EQ(config.MsfWidthAt(16), config.msf_width);
+  EXPECT_EQ(config.MsfWidthAt(19), 0.75);
+  EXPECT_FALSE(config.MsfWidthAt(5).has_value());
+}
+
 TEST(ModelConfigTest, PlacementMustNameStrideTwoLayers) {
   ModelConfig config = *LoadModelConfig("yolov8n");
-  for (const char* placement : {"2", "3,", "3;5", "3 5", ",3", "3,5x", "", "-1"}) {
+  for (const char* placement :
+       {"2", "3,", "3;5", "3 5", ",3", "3,5x", "", "-1", "3:", "3:0", "3:x", "3:2.5,5", "3:1:1"}) {
     config.msf_placement = placement;
     EXPECT_FALSE(config.Check().ok()) << "'" << placement << "'";
   }
@@ -82,8 +96,8 @@ TEST(ModelConfigTest, BranchSetsAreOptions) {
 }
 
 TEST(ModelConfigTest, HeadsCoverThreeScales) {
-  for (const char* name :
-       {"yolov8n", "yolov8n_msf", "yolov8n_msf_wide", "yolov8n_fpn", "yolov8n_hrnet"}) {
+  for (const char* name : {"yolov8n", "yolov8n_msf", "yolov8n_msf_wide", "yolov8n_msf_full",
+                           "yolov8n_fpn", "yolov8n_hrnet"}) {
     const ModelGraph graph = Build(name);
     ASSERT_EQ(graph.box_heads.size(), 3U) << name;
     for (int i = 0; i < 3; ++i) {

@@ -32,7 +32,7 @@ class BlockInitializer {
       const GraphNode& node = graph_.nodes[i];
       if (node.op != GraphOp::kConv) continue;
       if (node.name == name_ + ".cv1") stem_ = &node;
-      if (node.name == name_ + ".std" || node.name.ends_with(".pw")) branches_.push_back(&node);
+      if (node.name == name_ + ".std" || IsDepthwise(&node)) branches_.push_back(&node);
     }
     // In the order of the concatenation, where the standard branch, made last, is the second.
     if (branches_.size() > 2)
@@ -43,6 +43,7 @@ class BlockInitializer {
   // the relative error.
   double Initialize(const torch::Tensor& x, const torch::Tensor& teacher_x) {
     wanted_ = at::conv2d(teacher_x, teacher_weight_, teacher_bias_, 2, 1);
+    if (CanTakeOver(x)) return TakeOver(x);
     const torch::Tensor code = InitializeStem(x);
     residual_ = x.size(1) == stem_->channels ? at::avg_pool2d(x, 2, 2) : torch::Tensor();
     const torch::Tensor order = ByDifficulty(code);
@@ -75,6 +76,57 @@ class BlockInitializer {
     Assign(prefix + ".running_var", variance);
     Assign(prefix + ".weight", gain * (variance + kNormEpsilon).sqrt());
     Assign(prefix + ".bias", gain * mean + shift);
+  }
+
+  // Two depthwise branches as wide as the output, and no residual in the way.
+  bool CanTakeOver(const torch::Tensor& x) const {
+    const auto depthwise = std::count_if(branches_.begin(), branches_.end(), IsDepthwise);
+    return stem_->channels == wanted_.size(1) && stem_->channels != x.size(1) && depthwise >= 2;
+  }
+
+  // The stem becomes the teacher's convolution. One branch hands its output y on, another one -y,
+  // and the last 1x1 puts them together: SiLU(y) - SiLU(-y) = y. The other branches keep their
+  // random weights and have no part in the output yet.
+  double TakeOver(const torch::Tensor& x) {
+    const torch::Tensor map = at::conv2d(x, teacher_weight_, {}, 2, 1);
+    Assign(stem_->name + ".conv.weight", teacher_weight_);
+    AssignNorm(stem_->name + ".bn", map, torch::ones_like(teacher_bias_), teacher_bias_);
+    const torch::Tensor y = at::silu(map + teacher_bias_.view({1, -1, 1, 1}));
+    std::vector<torch::Tensor> outputs, shares;
+    double sign = 1.0;  // of the next branch that hands on: 1, -1, then none
+    for (const GraphNode* branch : branches_) {
+      const bool hands_on = IsDepthwise(branch) && sign != 0.0;
+      outputs.push_back(hands_on ? HandOn(*branch, y, sign) : Idle(*branch, y));
+      shares.push_back(torch::eye(stem_->channels) * (hands_on ? sign : 0.0));
+      if (hands_on) sign = sign > 0.0 ? -1.0 : 0.0;
+    }
+    const torch::Tensor joined = torch::cat(outputs, 1);
+    const torch::Tensor ones = torch::ones({joined.size(1)});
+    AssignNorm(name_ + ".norm", joined, ones, torch::zeros_like(ones));
+    const torch::Tensor last = torch::cat(shares, 1);
+    Assign(name_ + ".cv2.weight", last);
+    return RelativeError(PixelRows(at::silu(joined), kSamples).mm(last.t()),
+                         PixelRows(at::silu(wanted_), kSamples));
+  }
+
+  // The branch becomes `sign` times the identity.
+  torch::Tensor HandOn(const GraphNode& branch, const torch::Tensor& y, double sign) {
+    PassThrough(DepthwiseOf(branch));
+    Assign(branch.name + ".conv.weight", torch::eye(branch.channels) * sign);
+    const torch::Tensor output = y * sign, ones = torch::ones({branch.channels});
+    AssignNorm(branch.name + ".bn", output, ones, torch::zeros_like(ones));
+    return output;
+  }
+
+  // The branch gives what its weights happen to give, at mean 0 and variance 1.
+  torch::Tensor Idle(const GraphNode& branch, const torch::Tensor& y) {
+    if (IsDepthwise(&branch)) PassThrough(DepthwiseOf(branch));
+    const torch::Tensor output =
+        at::conv2d(y, tensors_.at(branch.name + ".conv.weight"), {}, 1, branch.kernel / 2);
+    const torch::Tensor mean = output.mean({0, 2, 3});
+    const torch::Tensor gain = 1.0 / (output.std({0, 2, 3}, false, false) + 1e-6);
+    AssignNorm(branch.name + ".bn", output, gain, -mean * gain);
+    return (output - mean.view({1, -1, 1, 1})) * gain.view({1, -1, 1, 1});
   }
 
   // Principal components of the pre-activations; returns the activated code.
@@ -152,14 +204,18 @@ class BlockInitializer {
                                      .view({branch.channels, -1, kernel, kernel});
     const torch::Tensor shift = solution[rows.size(1)];
     Assign(branch.name + ".conv.weight", weight);
-    if (branch.name.ends_with(".pw"))
-      PassThrough(branch.name.substr(0, branch.name.size() - 3) + ".dw.weight");
+    if (IsDepthwise(&branch)) PassThrough(DepthwiseOf(branch));
     const torch::Tensor output = at::conv2d(code, weight, {}, 1, kernel / 2);
     AssignNorm(branch.name + ".bn", output, torch::ones({branch.channels}), shift);
     torch::Tensor sum = output + shift.view({1, -1, 1, 1});
     if (residual_.defined()) sum = sum + residual_;
     sums.push_back(sum);
     loudness.push_back(gain);
+  }
+
+  static bool IsDepthwise(const GraphNode* branch) { return branch->name.ends_with(".pw"); }
+  static std::string DepthwiseOf(const GraphNode& branch) {
+    return branch.name.substr(0, branch.name.size() - 3) + ".dw.weight";
   }
 
   // A depthwise kernel that hands its input on.
@@ -179,8 +235,11 @@ class BlockInitializer {
                         targets = PixelRows(at::silu(wanted_), kSamples);
     const torch::Tensor solution = SolveLeastSquares(features, targets);
     Assign(name_ + ".cv2.weight", solution.t().contiguous());
-    const torch::Tensor error =
-        (features.mm(solution) - targets).square().mean(0) / (targets.var(0) + 1e-3);
+    return RelativeError(features.mm(solution), targets);
+  }
+
+  static double RelativeError(const torch::Tensor& given, const torch::Tensor& wanted) {
+    const torch::Tensor error = (given - wanted).square().mean(0) / (wanted.var(0) + 1e-3);
     return error.mean().item<double>();
   }
 
@@ -197,8 +256,8 @@ class BlockInitializer {
 
 }  // namespace
 
-std::vector<double> InitializeMsfLayers(Network& student, const Network& teacher,
-                                        const torch::Tensor& images) {
+std::map<int, double> InitializeMsfLayers(Network& student, const Network& teacher,
+                                          const torch::Tensor& images) {
   const torch::NoGradGuard no_grad;
   student.set_training(false);
   const ModelGraph& own = student.graph();
@@ -206,15 +265,15 @@ std::vector<double> InitializeMsfLayers(Network& student, const Network& teacher
   std::vector<torch::Tensor> values(own.nodes.size()), teacher_values(other.nodes.size());
   values[0] = teacher_values[0] = images.contiguous(torch::MemoryFormat::ChannelsLast);
   teacher.RunNodes(1, static_cast<int>(other.nodes.size()), teacher_values);
-  std::vector<double> errors;
+  std::map<int, double> errors;
   for (int layer = 0; layer < static_cast<int>(own.layers.size()); ++layer) {
     const GraphLayer& nodes = own.layers[layer];
     const int begin = std::max(1, nodes.begin);
     if (nodes.type == "MSFConv") {
       const torch::Tensor& teacher_x =
           teacher_values[other.nodes[std::max(1, other.layers[layer].begin)].inputs[0]];
-      errors.push_back(BlockInitializer(student, teacher, layer)
-                           .Initialize(values[own.nodes[begin].inputs[0]], teacher_x));
+      errors[layer] = BlockInitializer(student, teacher, layer)
+                          .Initialize(values[own.nodes[begin].inputs[0]], teacher_x);
     }
     student.RunNodes(begin, nodes.end, values);
   }

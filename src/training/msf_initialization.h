@@ -1,6 +1,8 @@
 // Starting weights of MSFConv blocks in closed form.
 #pragma once
 
+#include <map>
+
 #include "training/network.h"
 
 namespace msf {
@@ -13,11 +15,14 @@ namespace msf {
 //  - each branch restores its share of the pre-activations from them by least squares, the residual
 //  taken into account;
 //  - the last 1x1 is the least-squares map from the activated branches to the teacher's output.
-// Layers are treated one after the other, each on what the student itself computes before it, so
-// that later ones make up for earlier errors. Both networks' layers correspond one to one; the
-// student's other layers hold the teacher's weights. Returns the relative squared error of each
-// MSFConv layer's output (1: as bad as the mean).
-std::vector<double> InitializeMsfLayers(Network& student, const Network& teacher,
-                                        const torch::Tensor& images);
+// A block whose branches are as wide as its output, and wider than its input, takes the teacher's
+// convolution over as it is: two branches hand it on with opposite signs, since SiLU(y) - SiLU(-y)
+// = y. (A larger network that begins as the smaller one's equal: Chen et al., "Net2Net", ICLR
+// 2016.) Layers are treated one after the other, each on what the student itself computes before
+// it, so that later ones make up for earlier errors. Both networks' layers correspond one to one;
+// the student's other layers hold the teacher's weights. Returns the relative squared error of the
+// output of each MSFConv layer, by its index (1: as bad as the mean).
+std::map<int, double> InitializeMsfLayers(Network& student, const Network& teacher,
+                                          const torch::Tensor& images);
 
 }  // namespace msf

@@ -61,8 +61,8 @@ TEST(FastSiluTest, SlicesWithGapsWork) {
 }
 
 TEST(NetworkTest, HeadsHaveTheirShapes) {
-  for (const char* name :
-       {"yolov8n", "yolov8n_msf", "yolov8n_msf_wide", "yolov8n_fpn", "yolov8n_hrnet"}) {
+  for (const char* name : {"yolov8n", "yolov8n_msf", "yolov8n_msf_wide", "yolov8n_msf_full",
+                           "yolov8n_fpn", "yolov8n_hrnet"}) {
     const Network network(BuildModelGraph(*LoadModelConfig(name)), 0);
     const torch::NoGradGuard no_grad;
     const HeadOutputs heads = network.Forward(torch::rand({1, 3, 64, 96}));
@@ -171,12 +171,12 @@ TEST(MsfInitializationTest, BlocksReproduceTheTeacher) {
   const LayerDistillation distillation(student, teacher, missing);
   ASSERT_EQ(distillation.layers(), (std::vector<int>{0, 1, 3, 5, 7, 16, 19}));
   const double before = distillation.Errors(images, false)[0];
-  const std::vector<double> errors = InitializeMsfLayers(student, teacher, images);
+  const std::map<int, double> errors = InitializeMsfLayers(student, teacher, images);
   ASSERT_EQ(errors.size(), 7U);
   const double after = distillation.Errors(images, false)[0];
   EXPECT_LT(after, 0.2);
   EXPECT_LT(after, 0.2 * before);
-  EXPECT_NEAR(after, errors[0], 0.1);
+  EXPECT_NEAR(after, errors.at(0), 0.1);
 }
 
 std::vector<torch::Tensor> ValuesOf(const Network& network, const torch::Tensor& images) {
@@ -184,6 +184,25 @@ std::vector<torch::Tensor> ValuesOf(const Network& network, const torch::Tensor&
   values[0] = images;
   network.RunNodes(1, static_cast<int>(values.size()), values);
   return values;
+}
+
+// A block as wide as its output begins as the teacher's convolution itself.
+TEST(MsfInitializationTest, FullWidthBlocksTakeTheTeacherOver) {
+  ModelConfig config = SmallConfig("3:1,5:1");
+  Network teacher(BuildModelGraph(SmallConfig("none")), 0), student(BuildModelGraph(config), 1);
+  Enliven(teacher);
+  student.LoadMatching(teacher.State());
+  torch::manual_seed(4);
+  const torch::Tensor images = torch::rand({2, 3, 64, 64});
+  for (const auto& [layer, error] : InitializeMsfLayers(student, teacher, images))
+    EXPECT_LT(error, 1e-8) << layer;
+  const torch::NoGradGuard no_grad;
+  teacher.set_training(false);
+  const torch::Tensor others = torch::rand({1, 3, 96, 64});
+  const auto last = [&](const Network& network) {
+    return ValuesOf(network, others)[network.graph().class_heads[2]];
+  };
+  EXPECT_TRUE(torch::allclose(last(student), last(teacher), 1e-3, 1e-4));
 }
 
 TEST(FeatureDistanceTest, CountsHowFarTheLayersOfTheChosenPicturesAre) {

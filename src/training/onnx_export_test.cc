@@ -105,7 +105,7 @@ TEST_P(OnnxExportTest, WeightsComeBack) {
 
 INSTANTIATE_TEST_SUITE_P(Models, OnnxExportTest,
                          testing::Values("yolov8n", "yolov8n_msf", "yolov8n_msf_wide",
-                                         "yolov8n_fpn", "yolov8n_hrnet"));
+                                         "yolov8n_msf_full", "yolov8n_fpn", "yolov8n_hrnet"));
 
 TEST(OnnxExportTest, SingleOutputHoldsDecodedBoxes) {
   const Network network = MakeNetwork("yolov8n");

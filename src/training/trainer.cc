@@ -23,6 +23,8 @@ namespace {
 
 constexpr double kUpright = 0.175;       // rad, 10 degrees: up to here a picture counts as upright
 constexpr double kGrey = 114.0 / 255.0;  // of borders, as in MakeTrainingPicture
+// Relative error of a block that already computes what the teacher's layer does.
+constexpr double kNothingToLearn = 1e-6;
 
 ModelConfig TeacherConfig(const std::vector<std::string>& classes, int class_width) {
   ModelConfig config;
@@ -101,29 +103,35 @@ Status Trainer::StartFrom(const NamedTensors& weights) {
   return network_.Load(weights);
 }
 
-void Trainer::InitializeBlocks() {
+std::vector<std::string> Trainer::InitializeBlocks() {
   constexpr int kBatches = 8;
   const std::vector<GraphLayer>& layers = network_.graph().layers;
   if (std::none_of(layers.begin(), layers.end(),
                    [](const GraphLayer& layer) { return layer.type == "MSFConv"; }))
-    return;
+    return new_tensors_;
   const EpochSampler sampler = Sampler(-1000, options_.augmentation.mosaic);
   std::vector<torch::Tensor> pictures;
   for (int i = 0; i < std::min(kBatches, sampler.num_batches()); ++i)
     pictures.push_back(sampler.Make(i).images);
-  const std::vector<double> errors = InitializeMsfLayers(network_, *teacher_, torch::cat(pictures));
-  for (size_t i = 0; i < errors.size(); ++i) {
-    on_progress_(
-        {"initialize", 0, 1, static_cast<int>(i), static_cast<int>(errors.size()), errors[i]});
+  const std::map<int, double> errors =
+      InitializeMsfLayers(network_, *teacher_, torch::cat(pictures));
+  std::vector<std::string> to_learn = new_tensors_;
+  int done = 0;
+  for (const auto& [layer, error] : errors) {
+    on_progress_({"initialize", 0, 1, done++, static_cast<int>(errors.size()), error});
+    if (error > kNothingToLearn) continue;
+    const std::string prefix = "model." + std::to_string(layer) + ".";
+    std::erase_if(to_learn, [&](const std::string& name) { return name.starts_with(prefix); });
   }
+  return to_learn;
 }
 
 void Trainer::Distill() {
   if (!teacher_ || new_tensors_.empty() || options_.distill_epochs == 0) return;
-  InitializeBlocks();
-  const LayerDistillation distillation(network_, *teacher_, new_tensors_);
+  const std::vector<std::string> to_learn = InitializeBlocks();
+  const LayerDistillation distillation(network_, *teacher_, to_learn);
   if (distillation.layers().empty()) return;
-  const std::set<std::string> trained = NewParameters();
+  const std::set<std::string> trained = ParametersOf(to_learn);
   OptimizerOptions rates;
   rates.learning_rate = options_.distill_rate;
   rates.weight_decay = 0.0;
@@ -146,9 +154,9 @@ void Trainer::Distill() {
   for (const auto& [name, tensor] : network_.parameters()) tensor.requires_grad_(true);
 }
 
-std::set<std::string> Trainer::NewParameters() const {
+std::set<std::string> Trainer::ParametersOf(const std::vector<std::string>& tensors) const {
   std::set<std::string> trained;
-  for (const std::string& name : new_tensors_) {
+  for (const std::string& name : tensors) {
     if (network_.parameters().contains(name)) trained.insert(name);
     // Norms beside new convolutions were taken over but must adapt with them.
     const size_t conv = name.rfind(".conv.weight");
@@ -290,7 +298,7 @@ Status Trainer::Run(const std::filesystem::path& directory) {
   std::filesystem::create_directories(directory);
   optimizer_ =
       std::make_unique<Optimizer>(network_.parameters(), options_.optimizer, TrainedParameters());
-  optimizer_->ScaleRate(NewParameters(), options_.new_rate);
+  optimizer_->ScaleRate(ParametersOf(new_tensors_), options_.new_rate);
   if (std::filesystem::exists(checkpoint)) {
     average_ =
         std::make_unique<WeightAverage>(network_, options_.average_decay, options_.average_ramp);

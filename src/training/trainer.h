@@ -138,8 +138,9 @@ class Trainer {
   const ModelGraph& graph() const { return network_.graph(); }
 
  private:
-  // Closed-form weights for MSFConv blocks, then layer-wise distillation of everything new.
-  void InitializeBlocks();
+  // Closed-form weights for MSFConv blocks; returns the new tensors that still have something to
+  // learn of the teacher's layers. Then layer-wise distillation of these.
+  std::vector<std::string> InitializeBlocks();
   void Distill();
   void TrainEpoch(int epoch);
   EpochSampler Sampler(int epoch, double mosaic) const;
@@ -153,8 +154,8 @@ class Trainer {
   // The distances on the pictures that count for it. `values`: of the network's nodes.
   Distances Imitate(const std::vector<torch::Tensor>& values, const Batch& batch) const;
   std::set<std::string> TrainedParameters() const;
-  // The blocks without starting weights: new convolutions with their norms.
-  std::set<std::string> NewParameters() const;
+  // Parameters among the tensors, and the norms of convolutions among them.
+  std::set<std::string> ParametersOf(const std::vector<std::string>& tensors) const;
   // Loss of one batch after its gradients were added; fills the record's sums.
   double TrainStep(const Batch& batch, EpochRecord& record);
   void ValidateEpoch(EpochRecord& record);
