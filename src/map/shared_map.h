@@ -1,33 +1,15 @@
-// The map shared between threads: many may read at a time, one may change it. Hold a guard briefly,
-// and one at a time; solvers copy what they need, solve without a guard, and apply the outcome.
+// The map shared between threads: many may read at a time, one may change it. Hold a guard briefly;
+// solvers copy what they need, solve without a guard, and apply the outcome.
 #pragma once
 
 #include <mutex>
 #include <shared_mutex>
 
 #include "map/map.h"
-#include "util/check.h"
-#include "util/fair_shared_mutex.h"
 
 namespace msf {
 
 class SharedMap {
-  // That this thread holds a guard: waiting for a second one it would wait for itself.
-  class Holding {
-   public:
-    explicit Holding(const SharedMap& map) : before_(held_) {
-      MSF_CHECK(held_ != &map, "a thread holds one guard of a map at a time");
-      held_ = &map;
-    }
-    ~Holding() { held_ = before_; }
-    Holding(const Holding&) = delete;
-    Holding& operator=(const Holding&) = delete;
-
-   private:
-    inline static thread_local const SharedMap* held_ = nullptr;
-    const SharedMap* before_;
-  };
-
  public:
   explicit SharedMap(Map map) : map_(std::move(map)) {}
 
@@ -38,9 +20,8 @@ class SharedMap {
 
    private:
     friend class SharedMap;
-    explicit Reader(const SharedMap& map) : holding_(map), lock_(map.mutex_), map_(&map.map_) {}
-    Holding holding_;
-    std::shared_lock<FairSharedMutex> lock_;
+    Reader(const Map& map, std::shared_mutex& mutex) : lock_(mutex), map_(&map) {}
+    std::shared_lock<std::shared_mutex> lock_;
     const Map* map_;
   };
 
@@ -51,17 +32,16 @@ class SharedMap {
 
    private:
     friend class SharedMap;
-    explicit Writer(SharedMap& map) : holding_(map), lock_(map.mutex_), map_(&map.map_) {}
-    Holding holding_;
-    std::unique_lock<FairSharedMutex> lock_;
+    Writer(Map& map, std::shared_mutex& mutex) : lock_(mutex), map_(&map) {}
+    std::unique_lock<std::shared_mutex> lock_;
     Map* map_;
   };
 
-  Reader Read() const { return Reader(*this); }
-  Writer Write() { return Writer(*this); }
+  Reader Read() const { return {map_, mutex_}; }
+  Writer Write() { return {map_, mutex_}; }
 
  private:
-  mutable FairSharedMutex mutex_;
+  mutable std::shared_mutex mutex_;
   Map map_;
 };
 
