@@ -327,7 +327,10 @@ void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
     if (track.kind == ObjectKind::kKnown && track.state == MotionState::kStatic)
       settled |= track.mask.cells;
   }
-  const cv::Mat1b near_objects = Surroundings(result.mask | unconfirmed, options_.suspect_reach_px);
+  // Without a detector flow is all that tells a mover from the room.
+  cv::Mat1b suspicious(result.mask.size(), static_cast<uint8_t>(255));
+  if (last_detections_.valid())
+    suspicious = Surroundings(result.mask | unconfirmed, options_.suspect_reach_px);
   for (const int i : work.all) {
     const Eigen::Vector2f& px = work.features.image_px[i];
     const cv::Point cell = work.view.depth.CellOf(px.x(), px.y());
@@ -337,7 +340,7 @@ void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
                             movers(cell) == 0;
       result.labels.Set(i, PointReason::kObject, is_still ? kStillOnObject : kOnObject);
     } else if (result.camera_motion_reliable && work.motion[i] == PointMotion::kMovesSideways &&
-               near_objects(cell) == 0) {
+               suspicious(cell) == 0) {
       // Flow errs now and then: what moves alone is rather a point that was followed badly.
       result.labels.Set(i, PointReason::kReadmitted, DoubtfulWeight());
     } else if (result.camera_motion_reliable && Moves(work.motion[i])) {

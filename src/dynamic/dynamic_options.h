@@ -118,7 +118,7 @@ struct ObjectMaskOptions {
           "the same for a mover of unknown class, whose box is only where motion was seen so far");
     visit("grow_px", grow_px, "the mask is grown by so much, px (by whole cells of 4 px)");
     visit("grow_without_depth_px", grow_without_depth_px,
-          "and so far over pixels without depth, px");
+          "and so far over pixels without depth, px; twice as far where these are the object");
     visit("min_depth_share", min_depth_share,
           "with less valid depth inside a box the whole box is the mask");
     visit("near_depth_share", near_depth_share,
@@ -239,8 +239,8 @@ struct DynamicOptions {
           "points less likely static are not used");
     visit(
         "suspect_reach_px", suspect_reach_px,
-        "a point whose flow disagrees is removed only so near to an object that is removed or may "
-        "be; elsewhere it is used with little weight, px");
+        "with a detector a point whose flow disagrees is removed only so near to an object that is "
+        "removed or may be, px; elsewhere it is used with little weight");
     visit("max_feature_factor", max_feature_factor,
           "so many times the points are extracted at most where masks cover the image");
     visit("history_frames", history_frames, "images kept, to place late detections");

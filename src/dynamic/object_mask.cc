@@ -120,13 +120,14 @@ void KeepLargePieces(cv::Mat1b& mask) {
 
 // Grows by whole cells, first everywhere, then over cells without depth: the band beside an object
 // that the sensor's projector does not reach shows the object's edge in the colour image.
-void Grow(cv::Mat1b& mask, const CoarseDepth& depth, const ObjectMaskOptions& options) {
+void Grow(cv::Mat1b& mask, const CoarseDepth& depth, int without_depth_px,
+          const ObjectMaskOptions& options) {
   const cv::Mat cross = cv::getStructuringElement(cv::MORPH_CROSS, {3, 3});
   cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, cross);
   const int everywhere = (options.grow_px + CoarseDepth::kCellSize - 1) / CoarseDepth::kCellSize;
   if (everywhere > 0) cv::dilate(mask, mask, cross, {-1, -1}, everywhere);
   const cv::Mat1b without_depth = depth.metres() <= 0;
-  for (int px = 0; px < options.grow_without_depth_px; px += CoarseDepth::kCellSize) {
+  for (int px = 0; px < without_depth_px; px += CoarseDepth::kCellSize) {
     cv::Mat1b wider;
     cv::dilate(mask, wider, cross);
     mask |= wider & without_depth;
@@ -192,9 +193,12 @@ ObjectMask MaskInBox(const CoarseDepth& depth, const BlockVerdicts& background, 
                   options);
   }
   KeepLargePieces(cells);
-  if (histogram.valid < options.near_depth_share * histogram.cells)
+  int without_depth_px = options.grow_without_depth_px;
+  if (histogram.valid < options.near_depth_share * histogram.cells) {
     AddCellsWithoutDepth(depth, CellsOf(depth, box), cells);
-  Grow(cells, depth, options);
+    without_depth_px *= 2;  // the box ends less exactly where the object does than depth would
+  }
+  Grow(cells, depth, without_depth_px, options);
   return Finished(std::move(cells), depth_m);
 }
 
@@ -209,7 +213,7 @@ ObjectMask MaskAroundPoints(const CoarseDepth& depth, const BlockVerdicts& backg
     if (similar && background.OfCell(cell) != BlockVerdict::kConfirmed) seeds.push_back(cell);
   }
   cv::Mat1b cells = Flood(depth, background, seeds, CellsOf(depth, box), depth_m, options);
-  Grow(cells, depth, options);
+  Grow(cells, depth, options.grow_without_depth_px, options);
   return Finished(std::move(cells), depth_m);
 }
 
