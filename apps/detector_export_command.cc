@@ -60,8 +60,7 @@ void AddDetectorExportCommand(CLI::App& app) {
   const auto arguments = std::make_shared<ExportArguments>();
   command->add_option("--model", arguments->model,
                       "yolov8n, yolov8n_msf, yolov8n_msf_wide, yolov8n_msf_full, yolov8n_fpn, "
-                      "yolov8n_hrnet, yolov8n_coco or a YAML "
-                      "file");
+                      "yolov8n_hrnet, yolov8n_coco or a YAML file");
   command
       ->add_option("--weights", arguments->weights,
                    "weights.pt of a training, an ONNX file exported here, or COCO weights")

@@ -79,7 +79,7 @@ TEST(CommandLine, EvaluateExplainsMistakes) {
   EXPECT_NE(RunProgram("evaluate " + truth + truth + "--frames 5 --dataset " + path).exit_code, 0);
 }
 
-TEST(CommandLine, PicturesAreSeenSevenWaysUpUnlessTheyAreUpright) {
+TEST(CommandLine, PicturesAreSeenNineWaysUpUnlessTheyAreUpright) {
   const TestFolder folder;
   ASSERT_TRUE(
       cv::imwrite((folder / "grey.png").string(), cv::Mat(48, 64, CV_8UC3, cv::Scalar(99))));
