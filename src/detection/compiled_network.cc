@@ -63,7 +63,7 @@ StatusOr<std::unique_ptr<CompiledNetwork>> CompiledNetwork::Compile(const Graph&
   if (ShouldMerge(options)) MergeBranches(*fixed);
   StoragePlan plan =
       PlanStorage(*fixed, options.precision, *ranges, InputStorage(options.float_input));
-  MSF_RETURN_IF_ERROR(CorrectRoundedWeights(*fixed, plan, *ranges));
+  MSF_RETURN_IF_ERROR(CorrectRoundedWeights(*fixed, plan, *ranges, LargestInt8Weight()));
   const OpenMpThreadsScope threads(options.threads);
   std::unique_ptr<CompiledNetwork> network(new CompiledNetwork());
   network->graph_ = *std::move(fixed);

@@ -191,7 +191,6 @@ TEST(CompiledNetworkInt8, DepthwiseConvolution) {
 }
 
 TEST(CompiledNetworkInt8, WholeDetector) {
-  if (!HasFastInt8()) GTEST_SKIP() << "without VNNI sums of two products saturate";
   TestNetworkOptions options;
   options.msf = true;
   const CompileOptions compile{64, 96, NetworkPrecision::kInt8};

@@ -73,7 +73,7 @@ class ConvolutionStep : public Step {
     const memory::desc source = ImageDesc(spec.input_shape, spec.input.format);
     const memory::desc target = ImageDesc(spec.output_shape, spec.output.format);
     RoundedWeights rounded;
-    if (int8) rounded = RoundWeights(*spec.weights);
+    if (int8) rounded = RoundWeights(*spec.weights, LargestInt8Weight());
 
     dnnl::primitive_attr attributes;
     attributes.set_scratchpad_mode(dnnl::scratchpad_mode::user);

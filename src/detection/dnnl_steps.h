@@ -54,7 +54,10 @@ bool CanWrite(NumberFormat compute, NumberFormat output);
 // What this processor computes fast.
 bool HasBfloat16();      // AVX-512, where oneDNN makes do without BF16 instructions
 bool HasFastBfloat16();  // AVX-512 BF16 or AMX
-bool HasFastInt8();      // AVX-512 VNNI, AVX2 VNNI or AMX
 bool HasMatrixUnit();    // AMX
+
+// 127 where the processor adds 8-bit products in 32 bits (VNNI, AMX); else 64, with which the sum
+// of two products fits into the 16 bits that it has for them.
+int LargestInt8Weight();
 
 }  // namespace msf

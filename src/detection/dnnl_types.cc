@@ -57,8 +57,10 @@ bool HasFastBfloat16() { return HasOneOf({Isa::avx512_core_bf16, Isa::avx512_cor
 
 bool HasMatrixUnit() { return HasOneOf({Isa::avx512_core_amx}); }
 
-bool HasFastInt8() {
-  return HasOneOf({Isa::avx2_vnni, Isa::avx512_core_vnni}) || HasFastBfloat16();
+int LargestInt8Weight() {
+  const bool has_dot_products =
+      HasOneOf({Isa::avx2_vnni, Isa::avx512_core_vnni}) || HasFastBfloat16();
+  return has_dot_products ? 127 : 64;
 }
 
 }  // namespace msf

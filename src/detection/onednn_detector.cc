@@ -63,8 +63,7 @@ NetworkPrecision ChoosePrecision(const std::string& name, const Graph& graph) {
   if (name == "fp32") return NetworkPrecision::kFloat32;
   if (name == "bf16") return NetworkPrecision::kBfloat16;
   if (name == "int8") return NetworkPrecision::kInt8;
-  if (graph.metadata.count(kActivationRangesKey) > 0 && HasFastInt8())
-    return NetworkPrecision::kInt8;
+  if (graph.metadata.count(kActivationRangesKey) > 0) return NetworkPrecision::kInt8;
   return HasFastBfloat16() ? NetworkPrecision::kBfloat16 : NetworkPrecision::kFloat32;
 }
 

@@ -11,8 +11,8 @@ namespace {
 
 // By how much rounding shifts the mean of each output channel; `means`: per input channel.
 std::vector<float> MeanShift(const Tensor& weights, int64_t group,
-                             const std::vector<float>& means) {
-  const RoundedWeights rounded = RoundWeights(weights);
+                             const std::vector<float>& means, int largest) {
+  const RoundedWeights rounded = RoundWeights(weights, largest);
   const size_t out = static_cast<size_t>(weights.shape[0]),
                in = static_cast<size_t>(weights.shape[1]),
                window = static_cast<size_t>(weights.shape[2] * weights.shape[3]),
@@ -48,16 +48,16 @@ void LessenBias(Graph& graph, Node& node, const std::vector<float>& shift) {
 
 }  // namespace
 
-RoundedWeights RoundWeights(const Tensor& weights) {
+RoundedWeights RoundWeights(const Tensor& weights, int largest) {
   const size_t channels = static_cast<size_t>(weights.shape[0]);
   const size_t per_channel = weights.floats.size() / channels;
   RoundedWeights rounded;
   rounded.values.resize(weights.floats.size());
   for (size_t c = 0; c < channels; ++c) {
     const float* w = weights.floats.data() + c * per_channel;
-    float largest = 0, sum = 0;
-    for (size_t i = 0; i < per_channel; ++i) largest = std::max(largest, std::abs(w[i]));
-    const float scale = largest > 0 ? largest / 127.0f : 1.0f;
+    float peak = 0, sum = 0;
+    for (size_t i = 0; i < per_channel; ++i) peak = std::max(peak, std::abs(w[i]));
+    const float scale = peak > 0 ? peak / static_cast<float>(largest) : 1.0f;
     for (size_t i = 0; i < per_channel; ++i) {
       const float nearest = std::nearbyint(w[i] / scale);
       rounded.values[c * per_channel + i] = static_cast<int8_t>(nearest);
@@ -70,7 +70,7 @@ RoundedWeights RoundWeights(const Tensor& weights) {
 }
 
 Status CorrectRoundedWeights(Graph& graph, const StoragePlan& plan,
-                             const ActivationRanges& ranges) {
+                             const ActivationRanges& ranges, int largest) {
   for (size_t i = 0; i < graph.nodes.size(); ++i) {
     if (plan.kinds[i] != NodeKind::kConvolution || plan.compute[i] != NumberFormat::kUint8)
       continue;
@@ -85,7 +85,7 @@ Status CorrectRoundedWeights(Graph& graph, const StoragePlan& plan,
           graph.source, Describe(node), input.shape[1], means.size()));
     }
     const std::shared_ptr<const Tensor> weights = graph.value(node.inputs[1]).constant;
-    LessenBias(graph, node, MeanShift(*weights, node.Int("group", 1), means));
+    LessenBias(graph, node, MeanShift(*weights, node.Int("group", 1), means, largest));
   }
   return Status::Ok();
 }

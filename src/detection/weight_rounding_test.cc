@@ -14,10 +14,17 @@ namespace {
 
 TEST(RoundWeights, GivesEveryChannelAScaleOfItsOwn) {
   const RoundedWeights rounded =
-      RoundWeights(Tensor::Floats({2, 1, 1, 3}, {1.27f, -0.5f, 0.014f, 0, 0, 0}));
+      RoundWeights(Tensor::Floats({2, 1, 1, 3}, {1.27f, -0.5f, 0.014f, 0, 0, 0}), 127);
   EXPECT_EQ(rounded.values, (std::vector<int8_t>{127, -50, 1, 0, 0, 0}));
   EXPECT_NEAR(rounded.scales[0], 0.01, 1e-6);
   EXPECT_EQ(rounded.sums, (std::vector<float>{78, 0}));
+}
+
+TEST(RoundWeights, HasNoLargerNumbersThanItMay) {
+  const RoundedWeights rounded =
+      RoundWeights(Tensor::Floats({1, 1, 1, 3}, {-1.28f, 0.5f, 0.014f}), 64);
+  EXPECT_EQ(rounded.values, (std::vector<int8_t>{-64, 25, 1}));
+  EXPECT_NEAR(rounded.scales[0], 0.02, 1e-6);
 }
 
 // Of the three convolutions the second, with `group`, has one large weight per output channel next

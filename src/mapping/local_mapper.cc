@@ -124,24 +124,39 @@ int LocalMapper::FuseWithNeighbours(KeyFrameId id) {
   }
   std::vector<MapPointId> theirs;
   for (const KeyFrameId target : targets) {
-    const SharedMap::Writer map = map_.Write();
-    if (!map->FindKeyFrame(id) || !map->FindKeyFrame(target)) continue;
-    fused += FusePoints(noise_, ValidPoints(*map->FindKeyFrame(id)), target,
-                        options_.fuse_radius_px, *map);
-    const std::vector<MapPointId> points = ValidPoints(*map->FindKeyFrame(target));
+    fused += FuseInto(target, PointsSeenBy(id));
+    const std::vector<MapPointId> points = PointsSeenBy(target);
     theirs.insert(theirs.end(), points.begin(), points.end());
   }
   std::sort(theirs.begin(), theirs.end());
   theirs.erase(std::unique(theirs.begin(), theirs.end()), theirs.end());
+  fused += FuseInto(id, theirs);
   const SharedMap::Writer map = map_.Write();
   if (!map->FindKeyFrame(id)) return fused;
-  fused += FusePoints(noise_, theirs, id, options_.fuse_radius_px, *map);
   for (const MapPointId point : ValidPoints(*map->FindKeyFrame(id))) {
     map->UpdateAppearance(point);
     map->UpdateNormalAndRange(point);
   }
   map->UpdateConnections(id);
   return fused;
+}
+
+std::vector<MapPointId> LocalMapper::PointsSeenBy(KeyFrameId id) const {
+  const SharedMap::Reader map = map_.Read();
+  const KeyFrame* keyframe = map->FindKeyFrame(id);
+  return keyframe ? ValidPoints(*keyframe) : std::vector<MapPointId>();
+}
+
+// Tracking reads the map meanwhile: only what has been found is written under the writer's guard.
+int LocalMapper::FuseInto(KeyFrameId id, std::span<const MapPointId> points) {
+  std::vector<PointSighting> sightings;
+  {
+    const SharedMap::Reader map = map_.Read();
+    if (!map->FindKeyFrame(id)) return 0;
+    sightings = FindPointsAgain(noise_, points, id, options_.fuse_radius_px, *map);
+  }
+  const SharedMap::Writer map = map_.Write();
+  return map->FindKeyFrame(id) ? FusePoints(sightings, id, *map) : 0;
 }
 
 bool LocalMapper::RefineNeighbourhood(KeyFrameId id) {

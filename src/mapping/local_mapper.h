@@ -4,6 +4,8 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "map/shared_map.h"
 #include "mapping/local_bundle.h"
@@ -41,6 +43,8 @@ class LocalMapper {
   bool Register(KeyFrameId id);
   void CreatePoints(KeyFrameId id, const std::function<bool()>& hurry, MappingSummary& summary);
   int FuseWithNeighbours(KeyFrameId id);
+  std::vector<MapPointId> PointsSeenBy(KeyFrameId id) const;
+  int FuseInto(KeyFrameId id, std::span<const MapPointId> points);
   bool RefineNeighbourhood(KeyFrameId id);
 
   const MappingOptions options_;

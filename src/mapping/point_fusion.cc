@@ -50,25 +50,35 @@ bool Agrees(const FrameFeatures& features, int feature, const ProjectionQuery& q
 
 }  // namespace
 
-int FusePoints(const NoiseOptions& noise, std::span<const MapPointId> points,
-               KeyFrameId keyframe_id, double radius_px, Map& map) {
+std::vector<PointSighting> FindPointsAgain(const NoiseOptions& noise,
+                                           std::span<const MapPointId> points,
+                                           KeyFrameId keyframe_id, double radius_px,
+                                           const Map& map) {
   const KeyFrame& keyframe = *map.FindKeyFrame(keyframe_id);
   const Projections projections = ProjectUnseen(points, keyframe, radius_px, map);
   const std::vector<int> found = MatchByProjection(*keyframe.features, projections.queries,
                                                    {.max_distance = kStrictDescriptorDistance});
-  int fused = 0;
+  std::vector<PointSighting> sightings;
   for (size_t q = 0; q < found.size(); ++q) {
-    const MapPointId id = projections.ids[q];
-    if (found[q] < 0 || !map.FindPoint(id)) continue;
-    if (!Agrees(*keyframe.features, found[q], projections.queries[q], projections.disparity_px[q],
-                map, noise))
-      continue;
-    const MapPointId present = keyframe.points[found[q]];
+    if (found[q] >= 0 && Agrees(*keyframe.features, found[q], projections.queries[q],
+                                projections.disparity_px[q], map, noise))
+      sightings.push_back({projections.ids[q], found[q]});
+  }
+  return sightings;
+}
+
+int FusePoints(std::span<const PointSighting> sightings, KeyFrameId keyframe_id, Map& map) {
+  const KeyFrame& keyframe = *map.FindKeyFrame(keyframe_id);
+  int fused = 0;
+  for (const auto& [id, feature] : sightings) {
+    const MapPoint* point = map.FindPoint(id);
+    if (!point) continue;
+    const MapPointId present = keyframe.points[feature];
     if (!present.valid()) {
-      fused += map.AddObservation(id, keyframe_id, found[q]);
+      fused += map.AddObservation(id, keyframe_id, feature);
     } else if (present != id) {
       const bool keep_present =
-          map.FindPoint(present)->observations.size() > map.FindPoint(id)->observations.size();
+          map.FindPoint(present)->observations.size() > point->observations.size();
       map.ReplacePoint(keep_present ? id : present, keep_present ? present : id);
       ++fused;
     }

@@ -22,6 +22,10 @@ class PointFusionTest : public ::testing::Test {
     const Rigid3d off(Eigen::Quaterniond::Identity(), Eigen::Vector3d(error_m, 0, 0));
     return world_.AddBareKeyFrame(T_cw, off * T_cw, map_);
   }
+  std::vector<PointSighting> FindAgain(KeyFrameId keyframe) const {
+    return FindPointsAgain(NoiseOptions{}, points_, keyframe, kRadius_px, map_);
+  }
+  int FuseInto(KeyFrameId keyframe) { return FusePoints(FindAgain(keyframe), keyframe, map_); }
   int LandmarkOf(MapPointId id, KeyFrameId keyframe) const {
     return world_.Landmark(keyframe, map_.FindPoint(id)->FeatureIn(keyframe));
   }
@@ -34,7 +38,7 @@ class PointFusionTest : public ::testing::Test {
 
 TEST_F(PointFusionTest, PointsAreConnectedWithTheFeaturesThatShowThem) {
   const KeyFrameId second = AddBare();
-  const int fused = FusePoints(NoiseOptions{}, points_, second, kRadius_px, map_);
+  const int fused = FuseInto(second);
   EXPECT_GT(fused, 100);
   int connected = 0;
   for (const MapPointId id : points_) {
@@ -43,8 +47,7 @@ TEST_F(PointFusionTest, PointsAreConnectedWithTheFeaturesThatShowThem) {
     EXPECT_EQ(LandmarkOf(id, first_), LandmarkOf(id, second));
   }
   EXPECT_EQ(connected, fused);
-  EXPECT_EQ(FusePoints(NoiseOptions{}, points_, second, kRadius_px, map_), 0)
-      << "they are seen already";
+  EXPECT_EQ(FuseInto(second), 0) << "they are seen already";
 }
 
 TEST_F(PointFusionTest, OfTwoPointsTheBetterObservedStays) {
@@ -56,10 +59,9 @@ TEST_F(PointFusionTest, OfTwoPointsTheBetterObservedStays) {
   for (int i = 0; i < features.size(); ++i) {
     theirs.push_back(map_.AddPoint(T_wc * features.PointInCamera(i, map_.camera()), second, i));
   }
-  FusePoints(NoiseOptions{}, points_, third, kRadius_px,
-             map_);  // the first keyframe's points have two observers
+  FuseInto(third);  // the first keyframe's points have two observers
   const int before = map_.NumPoints(map_.active_map());
-  const int fused = FusePoints(NoiseOptions{}, points_, second, kRadius_px, map_);
+  const int fused = FuseInto(second);
   EXPECT_GT(fused, 100);
   EXPECT_EQ(map_.NumPoints(map_.active_map()), before - fused);
   int replaced = 0;
@@ -73,8 +75,17 @@ TEST_F(PointFusionTest, OfTwoPointsTheBetterObservedStays) {
   EXPECT_GT(replaced, fused / 2);
 }
 
+TEST_F(PointFusionTest, WhatHasGoneSinceItWasFoundIsLeftOut) {
+  const KeyFrameId second = AddBare();
+  const std::vector<PointSighting> sightings = FindAgain(second);
+  ASSERT_GT(sightings.size(), 100u);
+  for (size_t k = 0; k < sightings.size() / 2; ++k) map_.RemovePoint(sightings[k].point);
+  EXPECT_EQ(FusePoints(sightings, second, map_),
+            static_cast<int>(sightings.size() - sightings.size() / 2));
+}
+
 TEST_F(PointFusionTest, NothingFitsAKeyFrameAtTheWrongPlace) {
-  EXPECT_LT(FusePoints(NoiseOptions{}, points_, AddBare(0.3), kRadius_px, map_), 3);
+  EXPECT_LT(FuseInto(AddBare(0.3)), 3);
 }
 
 }  // namespace
