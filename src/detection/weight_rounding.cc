@@ -10,8 +10,8 @@ namespace msf {
 namespace {
 
 // By how much rounding shifts the mean of each output channel; `means`: per input channel.
-std::vector<float> MeanShift(const Tensor& weights, int64_t group,
-                             const std::vector<float>& means, int largest) {
+std::vector<float> MeanShift(const Tensor& weights, int64_t group, const std::vector<float>& means,
+                             int largest) {
   const RoundedWeights rounded = RoundWeights(weights, largest);
   const size_t out = static_cast<size_t>(weights.shape[0]),
                in = static_cast<size_t>(weights.shape[1]),
@@ -69,8 +69,8 @@ RoundedWeights RoundWeights(const Tensor& weights, int largest) {
   return rounded;
 }
 
-Status CorrectRoundedWeights(Graph& graph, const StoragePlan& plan,
-                             const ActivationRanges& ranges, int largest) {
+Status CorrectRoundedWeights(Graph& graph, const StoragePlan& plan, const ActivationRanges& ranges,
+                             int largest) {
   for (size_t i = 0; i < graph.nodes.size(); ++i) {
     if (plan.kinds[i] != NodeKind::kConvolution || plan.compute[i] != NumberFormat::kUint8)
       continue;
