@@ -1,14 +1,13 @@
 #include "dynamic/background.h"
 
-#include <array>
 #include <cmath>
 
 namespace msf {
 
-void Background::Remember(double time_s, const CoarseDepth& depth, const cv::Mat1b& removed,
+void Background::Remember(double time_s, const CoarseDepth& depth, const cv::Mat1b& owners,
                           const Rigid3d& T_cw, bool steady) {
   if (!views_.empty() && time_s - views_.back().time_s < options_.keep_every_s) return;
-  views_.push_back({time_s, depth, removed, T_cw, steady});
+  views_.push_back({time_s, depth, owners, T_cw, steady});
   while (time_s - views_.front().time_s > options_.oldest_s) views_.pop_front();
 }
 
@@ -43,7 +42,9 @@ BlockVerdict Background::CompareWith(const View& view, const Eigen::Vector3d& p_
       options_.tolerance_m + options_.tolerance_per_m2 * p_past.z() * p_past.z();
   // Two cells around for the poses' errors: agreement needs one of the nearer ones, seeing through
   // needs all.
-  if (Agrees(view, cell, p_past.z(), tolerance_m)) return BlockVerdict::kConfirmed;
+  const std::optional<CellOwner> owner = OwnerOfDepth(view, cell, p_past.z(), tolerance_m);
+  if (owner == CellOwner::kWorld) return BlockVerdict::kConfirmed;
+  if (owner == CellOwner::kSomebody) return BlockVerdict::kSomebody;
   int beyond = 0, valid = 0;
   for (int r = std::max(0, cell.y - 2); r <= std::min(view.depth.rows() - 1, cell.y + 2); ++r) {
     for (int c = std::max(0, cell.x - 2); c <= std::min(view.depth.cols() - 1, cell.x + 2); ++c) {
@@ -57,16 +58,29 @@ BlockVerdict Background::CompareWith(const View& view, const Eigen::Vector3d& p_
   return valid >= kEnough && beyond == valid ? BlockVerdict::kIntruder : BlockVerdict::kUnknown;
 }
 
-bool Background::Agrees(const View& view, const cv::Point& cell, double depth_m,
-                        double tolerance_m) {
+std::optional<CellOwner> Background::OwnerOfDepth(const View& view, const cv::Point& cell,
+                                                  double depth_m, double tolerance_m) {
+  std::optional<CellOwner> found;
   for (int r = std::max(0, cell.y - 1); r <= std::min(view.depth.rows() - 1, cell.y + 1); ++r) {
     for (int c = std::max(0, cell.x - 1); c <= std::min(view.depth.cols() - 1, cell.x + 1); ++c) {
       const double d = view.depth.metres()(r, c);
-      const bool removed = !view.removed.empty() && view.removed(r, c) != 0;
-      if (d > 0 && !removed && std::abs(d - depth_m) <= tolerance_m) return true;
+      if (d <= 0 || std::abs(d - depth_m) > tolerance_m) continue;
+      const CellOwner owner = view.OwnerOf(r, c);
+      if (owner == CellOwner::kWorld) return owner;
+      if (found != CellOwner::kSomebody) found = owner;
     }
   }
-  return false;
+  return found;
+}
+
+// One view is enough to know a surface again, but a mask may be wrong once, and where most views
+// know the surface as the world's it is.
+BlockVerdict Background::Decide(const Votes& votes) const {
+  if (votes.intruder > votes.confirmed) return BlockVerdict::kIntruder;
+  const bool remembers =
+      options_.min_memory_views > 0 && votes.somebody >= options_.min_memory_views;
+  if (remembers && votes.somebody > votes.confirmed) return BlockVerdict::kSomebody;
+  return votes.confirmed > 0 ? BlockVerdict::kConfirmed : BlockVerdict::kUnknown;
 }
 
 BlockVerdicts Background::Compare(double time_s, const CoarseDepth& depth, const Rigid3d& T_cw,
@@ -82,19 +96,14 @@ BlockVerdicts Background::Compare(double time_s, const CoarseDepth& depth, const
     for (int c = 0; c < verdicts.cols(); ++c) {
       const Eigen::Vector3d p = rays_.Point(depth, r, c).cast<double>();
       if (p.z() <= 0) continue;
-      std::array<int, 3> votes{};
+      Votes votes;
       for (size_t k = 0; k < views.size(); ++k) {
         const BlockVerdict verdict = CompareWith(*views[k], T_past_now[k] * p);
-        const bool counts = verdict != BlockVerdict::kIntruder || (steady && views[k]->steady);
-        if (counts) ++votes[static_cast<size_t>(verdict)];
+        votes.confirmed += verdict == BlockVerdict::kConfirmed;
+        votes.somebody += verdict == BlockVerdict::kSomebody;
+        votes.intruder += verdict == BlockVerdict::kIntruder && steady && views[k]->steady;
       }
-      const int confirmed = votes[static_cast<size_t>(BlockVerdict::kConfirmed)];
-      const int intruder = votes[static_cast<size_t>(BlockVerdict::kIntruder)];
-      if (intruder > confirmed) {
-        verdicts.Set(r, c, BlockVerdict::kIntruder);
-      } else if (confirmed > 0) {
-        verdicts.Set(r, c, BlockVerdict::kConfirmed);
-      }
+      verdicts.Set(r, c, Decide(votes));
     }
   }
   return verdicts;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 
 #include "dynamic/block_rays.h"
 #include "dynamic/dynamic_options.h"
@@ -13,7 +14,15 @@ namespace msf {
 enum class BlockVerdict : uint8_t {
   kUnknown,    // no depth, not seen before, or hidden before
   kConfirmed,  // a surface that was there before, outside all masks
+  kSomebody,   // a surface that was there before and belonged to somebody
   kIntruder,   // the camera has seen through this place before
+};
+
+// To whom a cell of a view belongs.
+enum class CellOwner : uint8_t {
+  kWorld,
+  kDoubtful,  // it may belong to an object
+  kSomebody,  // an object of a class that moves by itself
 };
 
 // Verdicts per block of 2 x 2 cells of CoarseDepth.
@@ -45,9 +54,9 @@ class Background {
   Background(const BackgroundOptions& options, const Camera& camera)
       : options_(options), camera_(camera), rays_(camera) {}
 
-  // Keeps a view for later comparison. `removed`: cells that belonged to objects (may be empty).
-  // `steady`: the camera turned slowly.
-  void Remember(double time_s, const CoarseDepth& depth, const cv::Mat1b& removed,
+  // Keeps a view for later comparison. `owners`: a CellOwner per cell of the depth; empty: all
+  // belong to the world. `steady`: the camera turned slowly.
+  void Remember(double time_s, const CoarseDepth& depth, const cv::Mat1b& owners,
                 const Rigid3d& T_cw, bool steady);
   // Compares depth seen from T_cw with views of some age. What differs is new only where the
   // camera turned slowly (`steady`) both times: depth is not taken at the very time of the pose.
@@ -62,13 +71,24 @@ class Background {
   struct View {
     double time_s = 0;
     CoarseDepth depth;
-    cv::Mat1b removed;
+    cv::Mat1b owners;
     Rigid3d T_cw;
     bool steady = false;
+
+    CellOwner OwnerOf(int row, int col) const {
+      return owners.empty() ? CellOwner::kWorld : static_cast<CellOwner>(owners(row, col));
+    }
+  };
+  // How many views say what of a block.
+  struct Votes {
+    int confirmed = 0, somebody = 0, intruder = 0;
   };
   std::vector<const View*> Choose(double time_s) const;
-  // Whether the view shows the depth in the cell or beside it.
-  static bool Agrees(const View& view, const cv::Point& cell, double depth_m, double tolerance_m);
+  // To whom the depth belongs that the view shows in the cell or beside it; nobody knows where it
+  // shows another. The world comes first, what is in doubt last.
+  static std::optional<CellOwner> OwnerOfDepth(const View& view, const cv::Point& cell,
+                                               double depth_m, double tolerance_m);
+  BlockVerdict Decide(const Votes& votes) const;
   BlockVerdict CompareWith(const View& view, const Eigen::Vector3d& p_past) const;
 
   BackgroundOptions options_;

@@ -22,6 +22,11 @@ class BackgroundTest : public ::testing::Test {
   void Remember(double time_s, const CoarseDepth& depth, bool steady = true) {
     background_.Remember(time_s, depth, {}, {}, steady);
   }
+  void RememberThing(double time_s, CellOwner owner) {
+    cv::Mat1b owners(120, 160, static_cast<uint8_t>(CellOwner::kWorld));
+    owners(cv::Rect(60, 40, 40, 40)) = static_cast<uint8_t>(owner);  // cells of the thing
+    background_.Remember(time_s, WallAndThing(), owners, {}, true);
+  }
   struct Verdicts {
     BlockVerdict thing, wall;
   };
@@ -54,7 +59,7 @@ TEST_F(BackgroundTest, WithoutDepthNothingIsKnown) {
   EXPECT_EQ(Compare(1, WallAndThing(0)).thing, BlockVerdict::kUnknown);
 }
 
-// 0.025 m + 0.01 * 9 m = 0.115 m.
+// 0.012 m + 0.01 * 9 m = 0.102 m.
 TEST_F(BackgroundTest, NoiseOfDepthIsTolerated) {
   Remember(0, Wall());
   EXPECT_EQ(Compare(1, Wall(3.1f)).wall, BlockVerdict::kConfirmed);
@@ -74,13 +79,41 @@ TEST_F(BackgroundTest, WhileTheCameraTurnsNothingIsNew) {
   EXPECT_EQ(then.wall, BlockVerdict::kConfirmed);
 }
 
-TEST_F(BackgroundTest, WhatWasRemovedThenConfirmsNothing) {
-  cv::Mat1b removed(120, 160, static_cast<uint8_t>(0));
-  removed(cv::Rect(60, 40, 40, 40)) = 255;  // cells of the thing
-  background_.Remember(0, WallAndThing(), removed, {}, true);
+TEST_F(BackgroundTest, WhatWasInDoubtThenConfirmsNothing) {
+  RememberThing(0, CellOwner::kDoubtful);
   const auto [thing, wall] = Compare(1, WallAndThing());
   EXPECT_EQ(thing, BlockVerdict::kUnknown);
   EXPECT_EQ(wall, BlockVerdict::kConfirmed);
+}
+
+TEST_F(BackgroundTest, WhoWasSeenTwiceIsKnownAgainWhileHeIsThere) {
+  RememberThing(0, CellOwner::kSomebody);
+  EXPECT_EQ(Compare(3, WallAndThing()).thing, BlockVerdict::kUnknown) << "one mask may be wrong";
+  RememberThing(2, CellOwner::kSomebody);
+  EXPECT_EQ(Compare(3, WallAndThing()).thing, BlockVerdict::kSomebody);
+  EXPECT_EQ(Compare(3, WallAndThing()).wall, BlockVerdict::kConfirmed);
+  EXPECT_EQ(Compare(3, Wall()).thing, BlockVerdict::kUnknown) << "he has gone";
+  Remember(10.5, Wall());
+  EXPECT_EQ(Compare(11.2, WallAndThing()).thing, BlockVerdict::kIntruder)
+      << "that was too long ago";
+}
+
+TEST_F(BackgroundTest, TheMajorityOfViewsSaysWhoseASurfaceIs) {
+  RememberThing(0, CellOwner::kSomebody);
+  RememberThing(2, CellOwner::kSomebody);
+  RememberThing(4, CellOwner::kWorld);
+  EXPECT_EQ(Compare(5, WallAndThing()).thing, BlockVerdict::kSomebody);
+  RememberThing(6, CellOwner::kWorld);
+  EXPECT_EQ(Compare(7, WallAndThing()).thing, BlockVerdict::kConfirmed);
+}
+
+TEST_F(BackgroundTest, NobodyIsRememberedWhenNobodyIsToBe) {
+  BackgroundOptions options;
+  options.min_memory_views = 0;
+  background_ = Background(options, *TestCamera());
+  RememberThing(0, CellOwner::kSomebody);
+  RememberThing(2, CellOwner::kSomebody);
+  EXPECT_EQ(Compare(3, WallAndThing()).thing, BlockVerdict::kUnknown);
 }
 
 TEST_F(BackgroundTest, OnlyViewsOfSomeAgeCount) {

@@ -315,6 +315,23 @@ bool DynamicFilter::CoversImage(const ObjectTrack& track) const {
   return track.box.area() > options_.mask.max_image_share * camera_.width * camera_.height;
 }
 
+// Where somebody was seen before and still is, by depth, though no detection says so now: he may be
+// half out of the image or turned away.
+cv::Mat1b DynamicFilter::RememberedCells(const Work& work) const {
+  constexpr int kSmooth = 3;  // blocks: single ones are chance
+  const cv::Size size(work.view.depth.cols(), work.view.depth.rows());
+  if (work.background.rows() == 0) return cv::Mat1b(size, static_cast<uint8_t>(0));
+  cv::Mat1b cells(work.background.rows(), work.background.cols(), static_cast<uint8_t>(0));
+  for (int r = 0; r < cells.rows; ++r) {
+    for (int c = 0; c < cells.cols; ++c) {
+      if (work.background.At(r, c) == BlockVerdict::kSomebody) cells(r, c) = 255;
+    }
+  }
+  cv::medianBlur(cells, cells, kSmooth);
+  cv::resize(cells, cells, size, 0, 0, cv::INTER_NEAREST);
+  return cells;
+}
+
 void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
   result.mask = cv::Mat1b(work.view.depth.rows(), work.view.depth.cols(), static_cast<uint8_t>(0));
   cv::Mat1b settled = result.mask.clone(), movers = result.mask.clone();
@@ -327,6 +344,7 @@ void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
     if (track.kind == ObjectKind::kKnown && track.state == MotionState::kStatic)
       settled |= track.mask.cells;
   }
+  result.mask |= RememberedCells(work) & ~settled;
   // Without a detector flow is all that tells a mover from the room.
   cv::Mat1b suspicious(result.mask.size(), static_cast<uint8_t>(255));
   if (last_detections_.valid())
@@ -398,18 +416,32 @@ void DynamicFilter::Describe(const Work& work, DynamicResult& result) const {
                         static_cast<double>(result.mask.total());
 }
 
-// Cells that cannot tell later what the static world looked like: those of objects, and those that
-// may be because they lie in the box of one and not on a plane.
-cv::Mat1b DynamicFilter::Doubtful(const Work& work, const DynamicResult& result) const {
-  if (work.in_box.empty()) return result.mask;
-  cv::Mat1b doubtful = work.in_box & ~work.on_plane;
-  cv::resize(doubtful, doubtful, result.mask.size(), 0, 0, cv::INTER_NEAREST);
-  return doubtful | result.mask;
+// What later frames are told of the cells. Cells of objects, and those in the box of one that are
+// not on a plane, cannot tell what the static world looked like. Only what is detected well makes
+// them somebody's: what is remembered must not prolong itself.
+cv::Mat1b DynamicFilter::OwnersOfCells(const Work& work, const DynamicResult& result) const {
+  cv::Mat1b owners(result.mask.size(), static_cast<uint8_t>(CellOwner::kWorld));
+  const auto give = [&](const cv::Mat1b& cells, CellOwner owner) {
+    owners.setTo(static_cast<uint8_t>(owner), cells);
+  };
+  give(result.mask, CellOwner::kDoubtful);
+  if (!work.in_box.empty()) {
+    cv::Mat1b doubtful = work.in_box & ~work.on_plane;
+    cv::resize(doubtful, doubtful, owners.size(), 0, 0, cv::INTER_NEAREST);
+    give(doubtful, CellOwner::kDoubtful);
+  }
+  for (const ObjectTrack& track : tracks_.tracks()) {
+    const bool is_sure = track.kind == ObjectKind::kKnown && track.Removes() &&
+                         track.score >= static_cast<float>(options_.tracks.start_score);
+    if (is_sure && !track.mask.empty() && IsCredible(track))
+      give(track.mask.cells, CellOwner::kSomebody);
+  }
+  return owners;
 }
 
 void DynamicFilter::Remember(Work& work, const DynamicResult& result) {
   mask_share_ = result.mask_share;
-  last_doubtful_ = Doubtful(work, result);
+  last_owners_ = OwnersOfCells(work, result);
   tracks_.RememberBoxes(work.frame.id, static_cast<size_t>(options_.history_frames));
   past_.push_back(std::move(work.view));
   if (past_.size() > static_cast<size_t>(options_.history_frames)) past_.pop_front();
@@ -428,7 +460,7 @@ void DynamicFilter::TakePose(const std::optional<Rigid3d>& T_cw, bool same_world
     }
   }
   if (T_cw && !past_.empty())
-    background_.Remember(past_.back().time_s, past_.back().depth, last_doubtful_, *T_cw, steady_);
+    background_.Remember(past_.back().time_s, past_.back().depth, last_owners_, *T_cw, steady_);
 }
 
 double DynamicFilter::FeatureFactor() const {

@@ -108,6 +108,7 @@ class DynamicFilter {
   void ExcludePlanes(Work& work) const;
   cv::Mat1b BlocksInMasks() const;
   void GrowMasks(const Work& work);
+  bool GrowsOverWhatMoves(const ObjectTrack& track, const Work& work) const;
   ObjectMaskOptions MaskOptionsFor(const ObjectTrack& track) const;
   void FindMovers(const Work& work);
   void FindIntruders(const Work& work);
@@ -115,11 +116,12 @@ class DynamicFilter {
   bool IsCredible(const ObjectTrack& track) const;
   double MaskShare(const ObjectTrack& track) const;
   bool CoversImage(const ObjectTrack& track) const;
+  cv::Mat1b RememberedCells(const Work& work) const;
   void LabelPoints(const Work& work, DynamicResult& result) const;
   void ReadmitPoints(const Work& work, DynamicResult& result) const;
   float DoubtfulWeight() const;
   void Describe(const Work& work, DynamicResult& result) const;
-  cv::Mat1b Doubtful(const Work& work, const DynamicResult& result) const;
+  cv::Mat1b OwnersOfCells(const Work& work, const DynamicResult& result) const;
   void Remember(Work& work, const DynamicResult& result);
   const PastView* ViewBefore(double time_s) const;
 
@@ -133,7 +135,7 @@ class DynamicFilter {
   Background background_;
   Vector6d last_motion_ = Vector6d::Zero();  // twist from the last frame to the present one
   bool steady_ = false;                      // the camera turns slowly
-  cv::Mat1b last_doubtful_;                  // cells of the last frame that may be objects
+  cv::Mat1b last_owners_;                    // CellOwner per cell of the last frame
   std::vector<Landmark> landmarks_;          // of the last frame
   std::optional<Rigid3d> T_cw_last_;         // of the last frame, by tracking
   std::optional<Rigid3d> T_cw_expected_;     // of the present one, by its motion since

@@ -222,11 +222,35 @@ void DynamicFilter::GrowMasks(const Work& work) {
     if (track.mask.depth_m > 0) expected_m = track.mask.depth_m;
     const bool trusted =
         track.confirmed_s == work.frame.time_s && track.score >= options_.tracks.sure_score;
-    track.mask = MaskInBox(work.view.depth, work.background, track.box, trusted, expected_m,
-                           MaskOptionsFor(track));
-    if (track.kind == ObjectKind::kUnknown && !track.mask.empty()) track.box = track.mask.box;
+    const auto fit = [&](const ObjectMaskOptions& options) {
+      return MaskInBox(work.view.depth, work.background, track.box, trusted, expected_m, options);
+    };
+    track.mask = fit(MaskOptionsFor(track));
+    if (track.kind != ObjectKind::kUnknown) continue;
+    if (!GrowsOverWhatMoves(track, work)) {
+      ObjectMaskOptions within_box = options_.mask;
+      within_box.box_margin = 0;
+      track.mask = fit(within_box);
+    }
+    if (!track.mask.empty()) track.box = track.mask.box;
   }
   tracks_.MergeMovers();
+}
+
+// The box of a mover is where motion was seen so far. What it grows by must move, too, or it would
+// flow over what it stands on.
+bool DynamicFilter::GrowsOverWhatMoves(const ObjectTrack& track, const Work& work) const {
+  constexpr double kLeastShare = 0.2;
+  MotionEvidence beyond;
+  for (const int i : work.all) {
+    const Eigen::Vector2f& px = work.features.image_px[i];
+    if (work.motion[i] == PointMotion::kUntested || !track.mask.Covers(px) ||
+        track.box.Contains(px.x(), px.y()))
+      continue;
+    ++beyond.tested;
+    beyond.moving += Moves(work.motion[i]);
+  }
+  return beyond.tested < options_.tracks.min_tested_points || beyond.MovingShare() >= kLeastShare;
 }
 
 ObjectMaskOptions DynamicFilter::MaskOptionsFor(const ObjectTrack& track) const {

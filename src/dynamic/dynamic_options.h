@@ -49,8 +49,9 @@ struct BackgroundOptions {
   double keep_every_s = 0.15;
   double youngest_s = 0.6;
   double oldest_s = 8;
-  int num_views = 4;
-  double tolerance_m = 0.025;
+  int num_views = 8;
+  int min_memory_views = 2;
+  double tolerance_m = 0.012;
   double tolerance_per_m2 = 0.01;
   double max_turn_px = 6;
   int min_intruder_blocks = 14;
@@ -61,6 +62,9 @@ struct BackgroundOptions {
     visit("youngest_s", youngest_s, "views that are compared are at least so old, s ...");
     visit("oldest_s", oldest_s, "... and at most so old, s");
     visit("num_views", num_views, "views that are compared; 0: none");
+    visit("min_memory_views", min_memory_views,
+          "views in which a surface has to be somebody's, more than in which it is the world's, to "
+          "be his where nothing is detected now; 0: never");
     visit("tolerance_m", tolerance_m, "depths differ by more than this, m, at depth 0 ...");
     visit("tolerance_per_m2", tolerance_per_m2, "... and its growth with the square of depth, 1/m");
     visit("max_turn_px", max_turn_px,
