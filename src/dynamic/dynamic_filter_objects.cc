@@ -66,16 +66,15 @@ Eigen::Vector2f CameraShift(const Camera& camera, const Rigid3d& T_now_past,
   return camera.Distort(camera.Project(p)).cast<float>() - past_px;
 }
 
-// At the edge of a mover its points may seem to lie on what is behind it, which stands still.
-bool MovesAsAWhole(const ObjectMask& mask, const std::vector<TestedPoint>& points) {
+bool MovesAsAWhole(const ObjectMask& mask, const std::vector<TestedPoint>& points,
+                   double least_share) {
   MotionEvidence evidence;
   for (const TestedPoint& point : points) {
     if (!mask.Covers(point.image_px)) continue;
     ++evidence.tested;
     evidence.moving += point.moves;
   }
-  constexpr double kLeastShare = 0.2;
-  return evidence.MovingShare() >= kLeastShare;
+  return evidence.MovingShare() >= least_share;
 }
 
 }  // namespace
@@ -270,6 +269,11 @@ void DynamicFilter::FindMovers(const Work& work) {
     if (on_object) continue;
     points.push_back({work.features.image_px[i], work.features.depth_m[i], Moves(work.motion[i])});
   }
+  // At the edge of a mover its points may seem to lie on what is behind it, which stands still.
+  // While the camera turns, flow errs in whole regions, and a detector tells more.
+  constexpr double kLeastShare = 0.2, kLeastShareTurning = 0.5;
+  const double least_share =
+      steady_ || !last_detections_.valid() ? kLeastShare : kLeastShareTurning;
   for (const std::vector<int>& cluster : FindMovingClusters(points, options_.tracks)) {
     std::vector<Eigen::Vector2f> seeds;
     std::vector<float> depths;
@@ -288,7 +292,7 @@ void DynamicFilter::FindMovers(const Work& work) {
     box = {box.x0 - margin_px, box.y0 - margin_px, box.x1 + margin_px, box.y1 + margin_px};
     const ObjectMask mask = MaskAroundPoints(work.view.depth, work.background, seeds,
                                              depths[depths.size() / 2], box, options_.mask);
-    if (!MovesAsAWhole(mask, points)) continue;
+    if (!MovesAsAWhole(mask, points, least_share)) continue;
     tracks_.TakeMover(mask, work.frame.time_s);
   }
 }

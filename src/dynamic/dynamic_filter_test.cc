@@ -295,6 +295,42 @@ TEST(DynamicFilterFull, AMoverOfUnknownClassIsFound) {
   }
 }
 
+TEST(DynamicFilterFull, AMoverDoesNotFlowOverWhatItTouches) {
+  const auto filter = MakeFilter(Mode("full"));
+  const cv::Rect box_px(120, 200, 96, 96), table_px(40, 296, 560, 140);
+  for (int i = 0; i <= 12; ++i) {
+    const cv::Rect px = Shifted(box_px, 10 * i);
+    RgbdFrame frame = TexturedFrame(i, 0.1 * i, 0, px);
+    frame.depth(table_px) = cv::Scalar(kThing_m * TestCamera()->depth_factor);
+    const Seen seen = Classify(*filter, frame);
+    if (i == 0) continue;
+    EXPECT_GT(seen.ShareOf(PointReason::kObject, BoxOf(px, -16)) +
+                  seen.ShareOf(PointReason::kFlow, BoxOf(px, -16)),
+              0.98)
+        << i;
+    EXPECT_GT(seen.ShareOf(PointReason::kStatic, BoxOf(table_px)), 0.75) << i;
+  }
+}
+
+TEST(DynamicFilterFull, WhoWasSeenOftenIsRememberedWhereNothingIsDetected) {
+  for (const bool remembers : {true, false}) {
+    DynamicOptions options = Mode("full");
+    options.tracks.settle_s = 100;
+    if (!remembers) options.background.min_memory_views = 0;
+    const auto filter = MakeFilter(options);
+    Seen seen;
+    for (int i = 0; i < 60; ++i) {
+      Detections found = Found(i, {{kPerson, 0.9f, BoxOf(kThing_px)}});
+      if (i >= 30) found.objects.clear();
+      seen = Classify(*filter, TexturedFrame(i, 0.1 * i, 0, kThing_px), &found);
+    }
+    EXPECT_EQ(FindPerson(seen.result), nullptr) << "he is followed no more";
+    const double removed = seen.ShareOf(PointReason::kObject, BoxOf(kThing_px, -8));
+    EXPECT_EQ(removed, remembers ? 1 : 0);
+    EXPECT_GT(seen.ShareOf(PointReason::kStatic, BoxOf(kThing_px, 24), false), 0.98);
+  }
+}
+
 // A small piece of the wall's surface that moves: too few points to make a mover of them.
 void AddSpeck(const cv::Rect& px, RgbdFrame& frame) {
   static const cv::Mat kSpeck = MakeTexture(13);
