@@ -37,7 +37,12 @@ class BackgroundTest : public ::testing::Test {
     EXPECT_EQ(all.cols(), 80);
     return {all.At(kThingRow, kThingCol), all.At(kWallRow, kWallCol)};
   }
-  Background background_{BackgroundOptions(), *TestCamera()};
+  static BackgroundOptions TwoViewsMakeAMemory() {
+    BackgroundOptions options;
+    options.min_memory_views = 2;
+    return options;
+  }
+  Background background_{TwoViewsMakeAMemory(), *TestCamera()};
 };
 
 TEST_F(BackgroundTest, WhatIsStillThereIsConfirmedWhatCameInIsAnIntruder) {

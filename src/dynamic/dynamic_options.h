@@ -50,7 +50,7 @@ struct BackgroundOptions {
   double youngest_s = 0.6;
   double oldest_s = 8;
   int num_views = 8;
-  int min_memory_views = 2;
+  int min_memory_views = 3;
   double tolerance_m = 0.012;
   double tolerance_per_m2 = 0.01;
   double max_turn_px = 6;
