@@ -10,7 +10,7 @@
 
 namespace msf {
 
-// One scale per output channel so that its largest weight becomes the largest number.
+// One scale per output channel so that its largest weight becomes `largest`.
 struct RoundedWeights {
   std::vector<int8_t> values;  // in the order of the weights
   std::vector<float> scales;   // per output channel: weight = scale * value

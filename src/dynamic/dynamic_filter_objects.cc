@@ -66,6 +66,10 @@ Eigen::Vector2f CameraShift(const Camera& camera, const Rigid3d& T_now_past,
   return camera.Distort(camera.Project(p)).cast<float>() - past_px;
 }
 
+// Share of its points that are seen to move: at the edge of a mover they may seem to lie on what is
+// behind it, which stands still.
+constexpr double kShareOfAMover = 0.2;
+
 bool MovesAsAWhole(const ObjectMask& mask, const std::vector<TestedPoint>& points,
                    double least_share) {
   MotionEvidence evidence;
@@ -239,7 +243,6 @@ void DynamicFilter::GrowMasks(const Work& work) {
 // The box of a mover is where motion was seen so far. What it grows by must move, too, or it would
 // flow over what it stands on.
 bool DynamicFilter::GrowsOverWhatMoves(const ObjectTrack& track, const Work& work) const {
-  constexpr double kLeastShare = 0.2;
   MotionEvidence beyond;
   for (const int i : work.all) {
     const Eigen::Vector2f& px = work.features.image_px[i];
@@ -249,7 +252,8 @@ bool DynamicFilter::GrowsOverWhatMoves(const ObjectTrack& track, const Work& wor
     ++beyond.tested;
     beyond.moving += Moves(work.motion[i]);
   }
-  return beyond.tested < options_.tracks.min_tested_points || beyond.MovingShare() >= kLeastShare;
+  return beyond.tested < options_.tracks.min_tested_points ||
+         beyond.MovingShare() >= kShareOfAMover;
 }
 
 ObjectMaskOptions DynamicFilter::MaskOptionsFor(const ObjectTrack& track) const {
@@ -269,11 +273,9 @@ void DynamicFilter::FindMovers(const Work& work) {
     if (on_object) continue;
     points.push_back({work.features.image_px[i], work.features.depth_m[i], Moves(work.motion[i])});
   }
-  // At the edge of a mover its points may seem to lie on what is behind it, which stands still.
   // While the camera turns, flow errs in whole regions, and a detector tells more.
-  constexpr double kLeastShare = 0.2, kLeastShareTurning = 0.5;
-  const double least_share =
-      steady_ || !last_detections_.valid() ? kLeastShare : kLeastShareTurning;
+  constexpr double kShareTurning = 0.5;
+  const double least_share = steady_ || !last_detections_.valid() ? kShareOfAMover : kShareTurning;
   for (const std::vector<int>& cluster : FindMovingClusters(points, options_.tracks)) {
     std::vector<Eigen::Vector2f> seeds;
     std::vector<float> depths;
