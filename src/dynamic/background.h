@@ -2,6 +2,7 @@
 // still, and where the camera has seen through, something has come in since.
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <optional>
 
@@ -74,6 +75,9 @@ class Background {
     cv::Mat1b owners;
     Rigid3d T_cw;
     bool steady = false;
+    // Depths around each cell, found once since every view is compared with for seconds.
+    cv::Mat1f nearest_m, farthest_m;  // of the cell and those beside it; none: infinity and 0
+    cv::Mat1f clear_m;  // up to here the camera saw through, two cells around; 0: not known
 
     CellOwner OwnerOf(int row, int col) const {
       return owners.empty() ? CellOwner::kWorld : static_cast<CellOwner>(owners(row, col));
@@ -82,6 +86,11 @@ class Background {
   // How many views say what of a block.
   struct Votes {
     int confirmed = 0, somebody = 0, intruder = 0;
+
+    // Whatever the views that are left say.
+    bool IsConfirmed(int views_left) const {
+      return confirmed > 0 && confirmed >= std::max(somebody, intruder) + views_left;
+    }
   };
   std::vector<const View*> Choose(double time_s) const;
   // To whom the depth belongs that the view shows in the cell or beside it; nobody knows where it
