@@ -295,6 +295,44 @@ TEST(DynamicFilterFull, AMoverOfUnknownClassIsFound) {
   }
 }
 
+// The wall as a camera sees it that has turned by `turn_px` in the middle of the image; before it a
+// thing of which a part carries a texture of its own and the rest looks like the wall.
+RgbdFrame TurnedFrame(int number, float turn_px, const cv::Rect& thing_px,
+                      const cv::Rect& part_px) {
+  const Camera& camera = *TestCamera();
+  RgbdFrame frame = TexturedFrame(number, 0.1 * number, 0);
+  const auto f = static_cast<float>(camera.fx), cx = static_cast<float>(camera.cx),
+             cy = static_cast<float>(camera.cy), a = turn_px / f;
+  const cv::Matx33f K(f, 0, cx, 0, f, cy, 0, 0, 1);
+  const cv::Matx33f R(std::cos(a), 0, std::sin(a), 0, 1, 0, -std::sin(a), 0, std::cos(a));
+  cv::warpPerspective(frame.color.clone(), frame.color, K * R * K.inv(), frame.color.size(),
+                      cv::INTER_LINEAR, cv::BORDER_REFLECT);
+  TexturedFrame(number, 0, 0, part_px).color(part_px).copyTo(frame.color(part_px));
+  frame.depth = MakeDepth(kWall_m, {{thing_px, kThing_m}});
+  return frame;
+}
+
+TEST(DynamicFilterFull, WhileTheCameraTurnsADetectorKnowsBetterWhatMovesInPart) {
+  constexpr int kTurn_px = 10, kFrames = 5;
+  // A third of the thing moves downwards.
+  const auto finds_mover = [](bool detector_works, int turn_px) {
+    const auto filter = MakeFilter(Mode("full"));
+    bool found = false;
+    for (int i = 0; i < kFrames; ++i) {
+      const Detections nothing = Found(i, {});
+      const RgbdFrame frame =
+          TurnedFrame(i, static_cast<float>(turn_px * i), Shifted(kThing_px, turn_px * i),
+                      {240 + turn_px * i, 120 + 8 * i, 64, 160});
+      const Seen seen = Classify(*filter, frame, detector_works ? &nothing : nullptr);
+      found = found || !seen.result.objects.empty();
+    }
+    return found;
+  };
+  EXPECT_FALSE(finds_mover(true, kTurn_px));
+  EXPECT_TRUE(finds_mover(false, kTurn_px)) << "flow alone must do without a detector";
+  EXPECT_TRUE(finds_mover(true, 0)) << "the camera rests";
+}
+
 TEST(DynamicFilterFull, AMoverDoesNotFlowOverWhatItTouches) {
   const auto filter = MakeFilter(Mode("full"));
   const cv::Rect box_px(120, 200, 96, 96), table_px(40, 296, 560, 140);

@@ -153,6 +153,19 @@ TEST(MaskInBox, WhoIsTooNearToBeMeasuredIsTheObject) {
   EXPECT_FALSE(MaskInBox(depth, {}, kBox, false, std::nullopt, options).Covers({280, 240}));
 }
 
+TEST(MaskInBox, GrowsTwiceAsFarOverMissingDepthWhereTheObjectHasNone) {
+  ObjectMaskOptions options = WithoutGrowing();
+  options.grow_without_depth_px = 8;
+  // Depth is missing in the right part of the box and on to x = 500.
+  const auto right_end_px = [&](int missing_from_px) {
+    const cv::Rect missing(missing_from_px, 120, 500 - missing_from_px, 240);
+    const CoarseDepth depth(DepthFrame(kWall_m, {{kThing_px, kThing_m}, {missing, 0}}));
+    return MaskInBox(depth, {}, {240, 120, 400, 360}, false, std::nullopt, options).box.x1;
+  };
+  EXPECT_EQ(right_end_px(400), 400 + 8) << "the thing has depth";
+  EXPECT_EQ(right_end_px(300), 400 + 16) << "most of it has none: all of the box is the object";
+}
+
 TEST(Union, CoversWhatEitherDoes) {
   const CoarseDepth depth = ThingBeforeWall();
   const ObjectMask left = WholeBox(depth, {8, 8, 40, 40}), right = WholeBox(depth, {32, 8, 48, 40});
