@@ -38,10 +38,17 @@ void DeclareRunArguments(CLI::App& command, RunArguments& arguments) {
   command.add_flag("--labels", arguments.labels,
                    "also write labels.csv and objects.csv: what was said about every point and "
                    "object, for 'evaluate --masks'");
+  CLI::Option* real_time =
+      command
+          .add_flag("--realtime", arguments.real_time,
+                    "give frames at the pace of their time stamps, as a camera does; those for "
+                    "which it has no buffer any more are dropped")
+          ->excludes(deterministic);
   command
-      .add_flag("--realtime", arguments.real_time,
-                "give frames at the pace of their time stamps; late ones are dropped")
-      ->excludes(deterministic);
+      .add_option("--buffers", arguments.buffers,
+                  "frames that the camera holds while tracking is busy; 1: only the newest")
+      ->check(CLI::Range(1, 1000))
+      ->needs(real_time);
   command.add_option("--max-frames", arguments.max_frames, "stop after so many frames")
       ->check(CLI::PositiveNumber);
   command.add_option("--seed", arguments.seed, "of everything random");

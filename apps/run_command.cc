@@ -58,16 +58,18 @@ class Pacer {
  public:
   Pacer(bool real_time, double first_time_s) : real_time_(real_time), first_time_s_(first_time_s) {}
 
-  // Waits for the frame's time. False: its successor's time has come as well, so a live camera
-  // would have dropped it.
-  bool WaitFor(double time_s, double next_time_s) {
+  // Waits for the frame's time. False: it is too late, a live camera has dropped it at
+  // `dropped_at_s` for want of buffers.
+  bool WaitFor(double time_s, double dropped_at_s) {
     if (!real_time_) return true;
-    if (SecondsSince(start_) > next_time_s - first_time_s_) return false;
+    if (DelayOf(dropped_at_s) > 0) return false;
     std::this_thread::sleep_until(start_ +
                                   std::chrono::duration_cast<Clock::duration>(
                                       std::chrono::duration<double>(time_s - first_time_s_)));
     return true;
   }
+  // Seconds since the camera had the frame.
+  double DelayOf(double time_s) const { return SecondsSince(start_) - (time_s - first_time_s_); }
 
  private:
   const bool real_time_;
@@ -142,12 +144,15 @@ Recording RunSession::TrackAll(Clock::time_point start) {
   Pacer pacer(arguments_.real_time, dataset_.time_s(0));
   for (size_t i = 0; i < count && !interrupted; ++i) {
     const StatusOr<RgbdFramePtr> frame = prefetcher ? *prefetcher->Next() : load(i);
-    const double next_time_s =
-        i + 1 < count ? dataset_.time_s(i + 1) : std::numeric_limits<double>::infinity();
+    const size_t pushed_out_by = i + static_cast<size_t>(arguments_.buffers);
+    const double dropped_at_s = pushed_out_by < count ? dataset_.time_s(pushed_out_by)
+                                                      : std::numeric_limits<double>::infinity();
     recording.tracked_index.push_back(-1);
     FrameRecord record;
-    if (pacer.WaitFor(dataset_.time_s(i), next_time_s)) {
+    if (pacer.WaitFor(dataset_.time_s(i), dropped_at_s)) {
       record = TrackOne(frame, recording);
+      if (arguments_.real_time)
+        record.timings_ms["delay"] = 1000 * pacer.DelayOf(dataset_.time_s(i));
     } else {
       record.state = "dropped";
     }

@@ -116,6 +116,23 @@ TEST_F(BadInputTest, FramesTooManyForHindsightAreToldOf) {
   EXPECT_THAT(Report().at("warnings").dump(), HasSubstr("the first 5 poses are as tracked"));
 }
 
+TEST_F(BadInputTest, FramesThatComeTooFastWaitInTheCamerasBuffersOrAreDropped) {
+  std::vector<std::string> lines;
+  for (int i = 0; i < kFrames; ++i) {
+    const std::string time_s = "1000.00000" + std::to_string(i);
+    lines.push_back(time_s + ' ' + Word(i, 1) + ' ' + time_s + ' ' + Word(i, 3));
+  }
+  WriteList(lines);
+  const auto by_state = [&](int buffers) {
+    EXPECT_EQ(Run("--realtime --buffers " + std::to_string(buffers)).exit_code, 0);
+    return Report().at("frames").at("by_state");
+  };
+  EXPECT_FALSE(by_state(kFrames).contains("dropped"));
+  EXPECT_THAT(ReadWholeFile(folder_ / "out/frames.csv"), HasSubstr("delay_ms"));
+  EXPECT_GT(by_state(1).at("dropped"), 0);
+  EXPECT_THAT(Run("--buffers 2").output, HasSubstr("--buffers requires --realtime"));
+}
+
 TEST_F(BadInputTest, ListsAreSortedAndRepeatedOrSenselessLinesLeftOut) {
   std::vector<std::string> lines(lines_.rbegin(), lines_.rend());
   lines.push_back(lines_[3]);

@@ -14,6 +14,13 @@ namespace {
 // Where the processor has too few cores for everything, tracking goes first. (Linux keeps a
 // niceness for each thread.)
 constexpr int kNiceness = 5;
+constexpr double kLoadOnFewCores = 0.6;
+constexpr unsigned kEnoughCores = 4;
+
+double LoadFor(const DetectionScheduleOptions& options) {
+  if (options.max_load > 0) return options.max_load;
+  return std::thread::hardware_concurrency() < kEnoughCores ? kLoadOnFewCores : 1;
+}
 
 }  // namespace
 
@@ -22,12 +29,14 @@ Status DetectionScheduleOptions::Check() const {
     return Status::Error("detection: every must be at least 1, delay_frames not negative");
   if (!(std::abs(mounted_deg) <= 180))
     return Status::Error("detection: mounted_deg must lie between -180 and 180");
+  if (!(max_load >= 0 && max_load <= 1))
+    return Status::Error("detection: max_load must lie between 0 and 1");
   return Status::Ok();
 }
 
 DetectionSource::DetectionSource(std::unique_ptr<Detector> detector,
                                  const DetectionScheduleOptions& options, bool threaded)
-    : detector_(std::move(detector)), options_(options) {
+    : detector_(std::move(detector)), options_(options), load_(LoadFor(options)) {
   if (threaded) thread_ = std::thread([this] { Run(); });
 }
 
@@ -57,9 +66,12 @@ std::shared_ptr<const Detections> DetectionSource::Newest(FrameId now) const {
   return nullptr;
 }
 
-void DetectionSource::WaitUntilTaken() const {
+void DetectionSource::WaitUntilTaken() {
   std::unique_lock lock(mutex_);
+  ++num_waiting_;
+  changed_.notify_all();
   changed_.wait(lock, [&] { return closed_ || !mailbox_.frame; });
+  --num_waiting_;
 }
 
 DetectionStatistics DetectionSource::statistics() const {
@@ -78,8 +90,16 @@ void DetectionSource::Run() {
       task = std::exchange(mailbox_, {});
       changed_.notify_all();
     }
+    const auto start = std::chrono::steady_clock::now();
     Detect(task);
+    Rest(std::chrono::steady_clock::now() - start);
   }
+}
+
+void DetectionSource::Rest(std::chrono::duration<double> after_work) {
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, after_work * (1 / load_ - 1),
+                    [&] { return closed_ || num_waiting_ > 0; });
 }
 
 void DetectionSource::Detect(const Task& task) {

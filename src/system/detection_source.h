@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <memory>
@@ -21,6 +22,7 @@ struct DetectionScheduleOptions {
   int delay_frames = 0;
   bool turn_upright = true;
   double mounted_deg = 0;
+  double max_load = 0;
 
   template <typename Visitor>
   void Visit(Visitor& visit) {
@@ -32,6 +34,9 @@ struct DetectionScheduleOptions {
     visit("mounted_deg", mounted_deg,
           "clockwise turn by which the images of a camera that is held as usual become upright, "
           "degrees: 90 or -90 for one that is mounted on its side");
+    visit("max_load", max_load,
+          "share of the time that the detector may work for, since a slow one would take the "
+          "second of two cores from mapping; 0: 0.6, or 1 where there are four cores or more");
   }
   Status Check() const;
 };
@@ -61,7 +66,8 @@ class DetectionSource {
   // The newest detections; null when there are none yet. They carry the frame that they belong to.
   std::shared_ptr<const Detections> Newest(FrameId now) const;
   // Waits until the mailbox is empty: for recordings, which come faster than a camera's images.
-  void WaitUntilTaken() const;
+  // Meanwhile the detector does not rest.
+  void WaitUntilTaken();
   DetectionStatistics statistics() const;
 
  private:
@@ -71,16 +77,20 @@ class DetectionSource {
   };
 
   void Run();
+  // Leaves the processor to others, so that the work before takes up no more than its share.
+  void Rest(std::chrono::duration<double> after_work);
   void Detect(const Task& task);
 
   const std::unique_ptr<Detector> detector_;
   const DetectionScheduleOptions options_;
+  const double load_;  // DetectionScheduleOptions::max_load
   int64_t num_offered_ = 0;
 
   mutable std::mutex mutex_;  // guards all below
   mutable std::condition_variable changed_;
   Task mailbox_;
   bool closed_ = false;
+  int num_waiting_ = 0;                                    // callers within WaitUntilTaken()
   std::deque<std::shared_ptr<const Detections>> results_;  // newest last
   DetectionStatistics statistics_;
   std::thread thread_;  // last: it starts when all else is ready

@@ -56,6 +56,7 @@ TEST(DetectionSchedule, Check) {
   EXPECT_FALSE((DetectionScheduleOptions{.delay_frames = -1}.Check().ok()));
   EXPECT_TRUE((DetectionScheduleOptions{.mounted_deg = -90}.Check().ok()));
   EXPECT_FALSE((DetectionScheduleOptions{.mounted_deg = 181}.Check().ok()));
+  EXPECT_FALSE((DetectionScheduleOptions{.max_load = 1.1}.Check().ok()));
 }
 
 TEST(DetectionSource, InlineTheResultIsThereAtOnce) {
@@ -207,6 +208,37 @@ TEST(DetectionSource, OfTheWaitingFramesTheNewestWins) {
     go.release();
   }
   EXPECT_EQ(seen, (std::vector<int>{0, 3, 4})) << "what was begun is finished";
+}
+
+// After a millisecond of work the thread would rest for a quarter of an hour.
+constexpr double kTinyLoad = 1e-6;
+StatusOr<Detections> SlowPerson(int frame) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  return OnePerson(frame);
+}
+
+TEST(DetectionSource, RestsAfterItsWork) {
+  std::vector<int> seen;
+  {
+    const auto detect = [&](int frame) {
+      seen.push_back(frame);
+      return SlowPerson(frame);
+    };
+    DetectionSource source(Scripted(detect), {.max_load = kTinyLoad}, true);
+    source.Offer(MakeFrame(0));
+    while (source.statistics().num_detected == 0) std::this_thread::yield();
+    source.Offer(MakeFrame(1));
+  }  // the end does not wait for a rest, either
+  EXPECT_EQ(seen, std::vector<int>{0});
+}
+
+TEST(DetectionSource, DoesNotRestWhileSomebodyWaits) {
+  DetectionSource source(Scripted(SlowPerson), {.max_load = kTinyLoad}, true);
+  for (int i = 0; i < 5; ++i) {
+    source.Offer(MakeFrame(i));
+    source.WaitUntilTaken();
+  }
+  EXPECT_GE(source.statistics().num_detected, 4);
 }
 
 }  // namespace
