@@ -60,6 +60,7 @@ DynamicFilter::DynamicFilter(const DynamicOptions& options, const Camera& camera
   if (options.mode == "paper") {
     flow_options_.shrink = 1;
     flow_options_.window_px = options.paper_window_px;
+    flow_options_.levels = 3;       // of the whole image
     flow_options_.iterations = 20;  // a small window converges slowly
   }
 }

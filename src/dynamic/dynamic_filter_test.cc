@@ -376,7 +376,7 @@ void AddSpeck(const cv::Rect& px, RgbdFrame& frame) {
 }
 
 TEST(DynamicFilterFull, FewPointsThatMoveAreRemovedOnlyBesideAnObject) {
-  const cv::Rect beside(kThing_px.br().x + 16, 204, 24, 24), far_away(60, 204, 24, 24);
+  const cv::Rect beside(kThing_px.br().x + 16, 204, 24, 24), far_away(76, 204, 24, 24);
   const auto filter = MakeFilter(Mode("full"));
   for (int i = 0; i < 3; ++i) {
     RgbdFrame frame = TexturedFrame(i, 0.1 * i, 0, kThing_px);
