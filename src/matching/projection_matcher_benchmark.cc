@@ -1,6 +1,7 @@
 // Matching a local map of 2000 points against an image of 1000 features.
 #include <benchmark/benchmark.h>
 
+#include <cmath>
 #include <random>
 
 #include "matching/projection_matcher.h"
@@ -31,7 +32,7 @@ void BM_MatchByProjection(benchmark::State& state) {
   for (int q = 0; q < state.range(0); ++q) {
     const int i = static_cast<int>(random() % features.size());
     queries.push_back({.uv_px = features.uv_px[i].cast<double>() + Eigen::Vector2d(3, -2),
-                       .radius_px = 20,
+                       .radius_px = 20 * std::pow(1.2, features.level[i]),
                        .min_level = std::max(0, features.level[i] - 1),
                        .max_level = features.level[i],
                        .descriptor = features.descriptors[i]});
