@@ -38,22 +38,21 @@ void FrameFeatures::BuildGrid(const Camera& camera) {
   grid_origin_px_ = lower;
   cells_per_px_ = Eigen::Vector2f(kGridColumns, kGridRows).cwiseQuotient(upper - lower);
 
-  num_levels_ = level.empty() ? 0 : 1 + *std::max_element(level.begin(), level.end());
   // Counting sort by cell keeps the points of a row of cells together in memory.
   std::vector<int32_t> cell_of(size());
-  cell_begin_.assign(CellOf(num_levels_, 0, 0) + 1, 0);
+  cell_begin_.assign(kGridColumns * kGridRows + 1, 0);
   for (int i = 0; i < size(); ++i) {
     const Eigen::Vector2f cell = (uv_px[i] - grid_origin_px_).cwiseProduct(cells_per_px_);
     const int column = std::clamp(static_cast<int>(cell.x()), 0, kGridColumns - 1);
     const int row = std::clamp(static_cast<int>(cell.y()), 0, kGridRows - 1);
-    cell_of[i] = CellOf(level[i], row, column);
+    cell_of[i] = row * kGridColumns + column;
     ++cell_begin_[cell_of[i] + 1];
   }
   for (size_t cell = 1; cell < cell_begin_.size(); ++cell)
     cell_begin_[cell] += cell_begin_[cell - 1];
   cell_points_.resize(size());
   std::vector<int32_t> next(cell_begin_.begin(), cell_begin_.end() - 1);
-  for (int i = 0; i < size(); ++i) cell_points_[next[cell_of[i]]++] = {uv_px[i], i};
+  for (int i = 0; i < size(); ++i) cell_points_[next[cell_of[i]]++] = {uv_px[i], level[i], i};
 }
 
 void FrameFeatures::FindInArea(const Eigen::Vector2d& centre_px, double radius_px, int min_level,
@@ -70,17 +69,16 @@ void FrameFeatures::FindInArea(const Eigen::Vector2d& centre_px, double radius_p
             first_row = std::max(0, static_cast<int>(first.y()));
   const int last_column = std::min(kGridColumns - 1, static_cast<int>(last.x()));
   const int last_row = std::min(kGridRows - 1, static_cast<int>(last.y()));
-  for (int l = std::max(0, min_level); l <= std::min(num_levels_ - 1, max_level); ++l) {
-    for (int row = first_row; row <= last_row; ++row) {
-      const int32_t begin = cell_begin_[CellOf(l, row, first_column)];
-      const int32_t end = cell_begin_[CellOf(l, row, last_column) + 1];
-      for (int32_t k = begin; k < end; ++k) {
-        const CellPoint& point = cell_points_[k];
-        // One branch for both tests: which of them fails is hard to predict.
-        const bool inside = (std::abs(point.uv_px.x() - centre.x()) < radius) &
-                            (std::abs(point.uv_px.y() - centre.y()) < radius);
-        if (inside) found.push_back(point.index);
-      }
+  for (int row = first_row; row <= last_row; ++row) {
+    const int32_t begin = cell_begin_[row * kGridColumns + first_column];
+    const int32_t end = cell_begin_[row * kGridColumns + last_column + 1];
+    for (int32_t k = begin; k < end; ++k) {
+      const CellPoint& point = cell_points_[k];
+      // One branch for all tests: which of them fails is hard to predict.
+      const bool inside = (point.level >= min_level) & (point.level <= max_level) &
+                          (std::abs(point.uv_px.x() - centre.x()) < radius) &
+                          (std::abs(point.uv_px.y() - centre.y()) < radius);
+      if (inside) found.push_back(point.index);
     }
   }
 }

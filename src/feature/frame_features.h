@@ -38,21 +38,18 @@ struct FrameFeatures {
                   std::vector<int>& found) const;
 
  private:
-  // A grid per level: searches want one or two of the eight levels, with radii that grow with them.
-  static constexpr int kGridColumns = 32;
-  static constexpr int kGridRows = 24;
-  static int CellOf(int level, int row, int column) {
-    return (level * kGridRows + row) * kGridColumns + column;
-  }
+  static constexpr int kGridColumns = 64;
+  static constexpr int kGridRows = 48;
   Eigen::Vector2f grid_origin_px_ = Eigen::Vector2f::Zero();
   Eigen::Vector2f cells_per_px_ = Eigen::Vector2f::Zero();
   // What a search asks of a point, side by side in memory.
   struct CellPoint {
     Eigen::Vector2f uv_px;
+    int32_t level;
     int32_t index;
   };
-  int num_levels_ = 0;
-  std::vector<int32_t> cell_begin_;  // offsets into cell_points_, per level row by row, and the end
+  std::vector<int32_t>
+      cell_begin_;  // kGridColumns * kGridRows + 1 offsets into cell_points_, row by row
   std::vector<CellPoint> cell_points_;
 };
 
