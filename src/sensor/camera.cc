@@ -9,7 +9,7 @@ namespace msf {
 namespace {
 
 // Kinect and Xtion share PrimeSense's design. Measured: on fr1_xyz and fr1_rpy the error is least
-// from 20 to 26 ms, most points agree with the map at 20 ms (docs/measurements.md).
+// from 20 to 26 ms, most points agree with the map at 20 ms (docs/experiments.md).
 constexpr double kPrimeSenseShutter_s = 0.023;
 
 // Measured: the camera agrees with the ground truth 4 ms (position, fr1_xyz) to 8 ms (rotation,
@@ -19,7 +19,7 @@ constexpr double kFreiburg1StampLag_s = 0.006;
 
 // 5000 by the data set's description, but depth is short: the path of fr1_xyz comes out 0.5 to
 // 0.9 % too small with it, with another SLAM system as well (0.75 %). The path of fr1_rpy is too
-// short to tell (docs/measurements.md).
+// short to tell (docs/experiments.md).
 constexpr double kFreiburg1DepthFactor = 4970;
 
 // Sturm et al. 2012 (TUM RGB-D) and Palazzolo et al. 2019 (Bonn): the calibrations that come with
