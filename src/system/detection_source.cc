@@ -16,6 +16,8 @@ namespace {
 constexpr int kNiceness = 5;
 constexpr double kLoadOnFewCores = 0.6;
 constexpr unsigned kEnoughCores = 4;
+// A detector that stalled once has rested enough.
+constexpr int kLongestRest_frames = 3;
 
 double LoadFor(const DetectionScheduleOptions& options) {
   if (options.max_load > 0) return options.max_load;
@@ -55,6 +57,7 @@ void DetectionSource::Offer(const RgbdFramePtr& frame, double turn_rad) {
   if (!thread_.joinable()) return Detect(task);
   const std::lock_guard lock(mutex_);
   mailbox_ = task;
+  ++num_posted_;
   changed_.notify_all();
 }
 
@@ -98,8 +101,9 @@ void DetectionSource::Run() {
 
 void DetectionSource::Rest(std::chrono::duration<double> after_work) {
   std::unique_lock lock(mutex_);
+  const int64_t last_frame = num_posted_ + kLongestRest_frames;
   changed_.wait_for(lock, after_work * (1 / load_ - 1),
-                    [&] { return closed_ || num_waiting_ > 0; });
+                    [&] { return closed_ || num_waiting_ > 0 || num_posted_ >= last_frame; });
 }
 
 void DetectionSource::Detect(const Task& task) {

@@ -77,7 +77,8 @@ class DetectionSource {
   };
 
   void Run();
-  // Leaves the processor to others, so that the work before takes up no more than its share.
+  // Leaves the processor to others, so that the work before takes up no more than its share, but
+  // not for more than a few frames.
   void Rest(std::chrono::duration<double> after_work);
   void Detect(const Task& task);
 
@@ -90,6 +91,7 @@ class DetectionSource {
   mutable std::condition_variable changed_;
   Task mailbox_;
   bool closed_ = false;
+  int64_t num_posted_ = 0;                                 // frames that were put into the mailbox
   int num_waiting_ = 0;                                    // callers within WaitUntilTaken()
   std::deque<std::shared_ptr<const Detections>> results_;  // newest last
   DetectionStatistics statistics_;

@@ -232,6 +232,14 @@ TEST(DetectionSource, RestsAfterItsWork) {
   EXPECT_EQ(seen, std::vector<int>{0});
 }
 
+TEST(DetectionSource, DoesNotRestForManyFrames) {
+  DetectionSource source(Scripted(SlowPerson), {.max_load = kTinyLoad}, true);
+  for (int i = 0; source.statistics().num_detected < 3; ++i) {
+    source.Offer(MakeFrame(i));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
 TEST(DetectionSource, DoesNotRestWhileSomebodyWaits) {
   DetectionSource source(Scripted(SlowPerson), {.max_load = kTinyLoad}, true);
   for (int i = 0; i < 5; ++i) {
