@@ -50,6 +50,16 @@ class BadInputTest : public ::testing::Test {
     for (const std::string& line : lines) text += line + "\n";
     folder_.Write("data/associations.txt", text);
   }
+  // Gives the frames other time stamps.
+  void WriteStamps(const std::function<std::string(int frame)>& stamp) const {
+    std::vector<std::string> lines;
+    for (int i = 0; i < kFrames; ++i) {
+      std::ostringstream line;
+      line << stamp(i) << ' ' << Word(i, 1) << ' ' << stamp(i) << ' ' << Word(i, 3);
+      lines.push_back(line.str());
+    }
+    WriteList(lines);
+  }
   void ChangeImage(const std::string& file, const std::function<void(cv::Mat&)>& change) const {
     cv::Mat image = cv::imread(file, cv::IMREAD_UNCHANGED);
     change(image);
@@ -117,12 +127,7 @@ TEST_F(BadInputTest, FramesTooManyForHindsightAreToldOf) {
 }
 
 TEST_F(BadInputTest, FramesThatComeTooFastWaitInTheCamerasBuffersOrAreDropped) {
-  std::vector<std::string> lines;
-  for (int i = 0; i < kFrames; ++i) {
-    const std::string time_s = "1000.00000" + std::to_string(i);
-    lines.push_back(time_s + ' ' + Word(i, 1) + ' ' + time_s + ' ' + Word(i, 3));
-  }
-  WriteList(lines);
+  WriteStamps([](int frame) { return "1000.00000" + std::to_string(frame); });
   const auto by_state = [&](int buffers) {
     EXPECT_EQ(Run("--realtime --buffers " + std::to_string(buffers)).exit_code, 0);
     return Report().at("frames").at("by_state");
@@ -214,14 +219,7 @@ TEST_F(BadInputTest, AResultsFolderThatCannotBeIsFoundBeforeTheRun) {
 
 TEST_F(BadInputTest, AnInterruptedRunWritesWhatItHas) {
   // Two seconds from frame to frame, so that the interrupt meets the run in its middle.
-  std::vector<std::string> lines;
-  for (int i = 0; i < kFrames; ++i) {
-    const std::string time_s = std::to_string(1000 + 2 * i);
-    std::ostringstream line;
-    line << time_s << ' ' << Word(i, 1) << ' ' << time_s << ' ' << Word(i, 3);
-    lines.push_back(line.str());
-  }
-  WriteList(lines);
+  WriteStamps([](int frame) { return std::to_string(1000 + 2 * frame); });
   // In the foreground, or else it sends the signal twice, and the second one kills.
   const Outcome outcome =
       RunShell("timeout --foreground --preserve-status -s INT 5 " MSF_PROGRAM " run " +

@@ -445,10 +445,10 @@ TEST(DynamicFilterFull, ACorrectedMapAndALostCameraAreSurvived) {
 // A thing that covers most of the image goes to the right before a wall that stands still.
 Seen SeenAfterFourSteps(bool with_landmarks) {
   std::vector<Landmark> landmarks;
-  for (float y = 20; with_landmarks && y < 100; y += 16) {
-    for (float x = 20; x < 620; x += 40) {
-      const Eigen::Vector2f px(x, y);
-      landmarks.push_back({px, TestCamera()->Unproject(px.cast<double>(), kWall_m)});
+  for (int y = 20; with_landmarks && y < 100; y += 16) {
+    for (int x = 20; x < 620; x += 40) {
+      const Eigen::Vector2d px(x, y);
+      landmarks.push_back({px.cast<float>(), TestCamera()->Unproject(px, kWall_m)});
     }
   }
   const auto filter = MakeFilter(Mode("full"));
