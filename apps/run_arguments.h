@@ -19,7 +19,7 @@ struct RunArguments {
   std::string detector;
   bool deterministic = false;
   bool real_time = false;
-  int buffers = 4;        // in which the camera keeps frames while tracking is busy
+  int buffers = 1;        // in which the camera keeps frames while tracking is busy
   size_t max_frames = 0;  // 0: all
   std::filesystem::path out_folder;
   std::optional<uint64_t> seed;

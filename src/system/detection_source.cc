@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <exception>
@@ -16,8 +17,9 @@ namespace {
 constexpr int kNiceness = 5;
 constexpr double kLoadOnFewCores = 0.6;
 constexpr unsigned kEnoughCores = 4;
-// A detector that stalled once has rested enough.
+// However long the work was: a detector that stalled has rested meanwhile.
 constexpr int kLongestRest_frames = 3;
+constexpr std::chrono::duration<double> kLongestRest = std::chrono::hours(1);  // no frames come
 
 double LoadFor(const DetectionScheduleOptions& options) {
   if (options.max_load > 0) return options.max_load;
@@ -102,7 +104,7 @@ void DetectionSource::Run() {
 void DetectionSource::Rest(std::chrono::duration<double> after_work) {
   std::unique_lock lock(mutex_);
   const int64_t last_frame = num_posted_ + kLongestRest_frames;
-  changed_.wait_for(lock, after_work * (1 / load_ - 1),
+  changed_.wait_for(lock, std::min(after_work * (1 / load_ - 1), kLongestRest),
                     [&] { return closed_ || num_waiting_ > 0 || num_posted_ >= last_frame; });
 }
 
