@@ -4,6 +4,7 @@ set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/msf_slam)
 
 add_library(msf_slam INTERFACE)
 target_link_libraries(msf_slam INTERFACE msf_system)
+target_compile_features(msf_slam INTERFACE cxx_std_20)
 add_library(msf_slam::msf_slam ALIAS msf_slam)
 install(TARGETS msf_slam EXPORT msf_slam_targets)
 

@@ -1,4 +1,4 @@
-# Installs the project to an empty folder, builds tests/consumer against it, runs it, and looks at what it links.
+# Installs the project to an empty folder, builds examples/live against it, runs it, and looks at what it links.
 # Needs BUILD_FOLDER, SOURCE_FOLDER, WORK_FOLDER, COMPILER.
 file(REMOVE_RECURSE ${WORK_FOLDER})
 set(prefix ${WORK_FOLDER}/prefix)
@@ -12,14 +12,14 @@ function(run what)
 endfunction()
 
 run("installing" ${CMAKE_COMMAND} --install ${BUILD_FOLDER} --prefix ${prefix})
-run("configuring the consumer" ${CMAKE_COMMAND} -S ${SOURCE_FOLDER}/tests/consumer -B ${WORK_FOLDER}/build -G Ninja
+run("configuring examples/live" ${CMAKE_COMMAND} -S ${SOURCE_FOLDER}/examples/live -B ${WORK_FOLDER}/build -G Ninja
     -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_PREFIX_PATH=${prefix})
-run("building the consumer" ${CMAKE_COMMAND} --build ${WORK_FOLDER}/build)
+run("building examples/live" ${CMAKE_COMMAND} --build ${WORK_FOLDER}/build)
 # The data must come from the installation, not from the source tree.
-run("running the consumer" ${CMAKE_COMMAND} -E env MSF_SLAM_DATA=${prefix}/share/msf_slam ${WORK_FOLDER}/build/consumer)
+run("running examples/live" ${CMAKE_COMMAND} -E env MSF_SLAM_DATA=${prefix}/share/msf_slam ${WORK_FOLDER}/build/live)
 message(STATUS "${output}")
 
-run("ldd" ldd ${WORK_FOLDER}/build/consumer)
+run("ldd" ldd ${WORK_FOLDER}/build/live)
 foreach(unwanted highgui torch libQt libgtk libGL\\.)
   if(output MATCHES "${unwanted}")
     message(FATAL_ERROR "the library links ${unwanted}:\n${output}")
