@@ -111,8 +111,18 @@ TEST(Pipeline, FramesThatDoNotFitAreRefusedAndChangeNothing) {
   RgbdFrame small = *simulator.Render(1).frame;
   small.color = small.color(cv::Rect(0, 0, 320, 240));
   EXPECT_FALSE((*system)->Track(std::make_shared<const RgbdFrame>(small)).ok());
+  RgbdFrame nameless = *simulator.Render(1).frame;
+  nameless.id = FrameId();
+  EXPECT_FALSE((*system)->Track(std::make_shared<const RgbdFrame>(nameless)).ok());
+  RgbdFrame foreign = *simulator.Render(1).frame;
+  Camera other = simulator.camera();
+  other.fx += 10;
+  foreign.camera = std::make_shared<const Camera>(other);
+  EXPECT_FALSE((*system)->Track(std::make_shared<const RgbdFrame>(foreign)).ok());
   EXPECT_TRUE((*system)->Track(simulator.Render(1).frame).ok());
-  EXPECT_EQ((*system)->Finish().frames.size(), 2u);
+  const Reconstruction reconstruction = (*system)->Finish();
+  EXPECT_EQ(reconstruction.frames.size(), 2u);
+  EXPECT_TRUE(reconstruction.health.ok());
 }
 
 TEST(Pipeline, OptionsThatMakeNoSenseAreNamed) {

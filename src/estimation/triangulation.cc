@@ -1,7 +1,6 @@
 #include "estimation/triangulation.h"
 
 #include <Eigen/QR>
-#include <limits>
 
 namespace msf {
 namespace {
@@ -30,30 +29,6 @@ std::optional<Eigen::Vector3d> Triangulate(const Camera& camera, const Rigid3d& 
   const Eigen::Vector3d p_1 = equations.householderQr().solve(right_side);
   if (!p_1.allFinite() || !(p_1.z() > 0) || !((T_21 * p_1).z() > 0)) return std::nullopt;
   return T_1w.Inverse() * p_1;
-}
-
-double CosParallax(const Camera& camera, const Rigid3d& T_1w, const Eigen::Vector2d& uv1_px,
-                   const Rigid3d& T_2w, const Eigen::Vector2d& uv2_px) {
-  const Eigen::Vector3d ray1_w = T_1w.rotation().conjugate() * camera.Unproject(uv1_px, 1);
-  const Eigen::Vector3d ray2_w = T_2w.rotation().conjugate() * camera.Unproject(uv2_px, 1);
-  return ray1_w.dot(ray2_w) / (ray1_w.norm() * ray2_w.norm());
-}
-
-Eigen::Matrix3d FundamentalMatrix(const Camera& camera, const Rigid3d& T_1w, const Rigid3d& T_2w) {
-  const Rigid3d T_21 = T_2w * T_1w.Inverse();
-  Eigen::Matrix3d K_inverse;
-  K_inverse << 1 / camera.fx, 0, -camera.cx / camera.fx, 0, 1 / camera.fy, -camera.cy / camera.fy,
-      0, 0, 1;
-  return K_inverse.transpose() * Hat(T_21.translation()) * T_21.RotationMatrix() * K_inverse;
-}
-
-double EpipolarDistance2(const Eigen::Matrix3d& F, const Eigen::Vector2d& uv1_px,
-                         const Eigen::Vector2d& uv2_px) {
-  const Eigen::Vector3d line = F * uv1_px.homogeneous();
-  const double norm2 = line.head<2>().squaredNorm();
-  if (!(norm2 > 0)) return std::numeric_limits<double>::infinity();
-  const double distance = line.dot(uv2_px.homogeneous());
-  return distance * distance / norm2;
 }
 
 }  // namespace msf

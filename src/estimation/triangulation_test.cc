@@ -44,25 +44,5 @@ TEST_F(Triangulation, NothingBehindOrAtInfinity) {
   EXPECT_FALSE(Triangulate(camera_, T_1w_, uv1_px_, T_1w_, uv1_px_));
 }
 
-TEST_F(Triangulation, ParallaxIsTheAngleAtThePoint) {
-  const Eigen::Vector3d to1 = T_1w_.Inverse().translation() - p_w_,
-                        to2 = T_2w_.Inverse().translation() - p_w_;
-  const double angle = std::atan2(to1.cross(to2).norm(), to1.dot(to2));
-  EXPECT_NEAR(CosParallax(camera_, T_1w_, uv1_px_, T_2w_, uv2_px_), std::cos(angle), 1e-12);
-}
-
-TEST_F(Triangulation, EpipolarLinePassesThroughTheMatch) {
-  const Eigen::Matrix3d F = FundamentalMatrix(camera_, T_1w_, T_2w_);
-  EXPECT_LT(EpipolarDistance2(F, uv1_px_, uv2_px_), 1e-16);
-  const Eigen::Vector2d normal = (F * uv1_px_.homogeneous()).head<2>().normalized();
-  EXPECT_NEAR(EpipolarDistance2(F, uv1_px_, uv2_px_ + 3 * normal), 9, 1e-6);
-  const Eigen::Vector2d along(-normal.y(), normal.x());
-  EXPECT_NEAR(EpipolarDistance2(F, uv1_px_, uv2_px_ + 30 * along), 0, 1e-12);
-}
-
-TEST_F(Triangulation, NoLineWithoutBaseline) {
-  EXPECT_TRUE(std::isinf(EpipolarDistance2(Eigen::Matrix3d::Zero(), uv1_px_, uv2_px_)));
-}
-
 }  // namespace
 }  // namespace msf

@@ -4,23 +4,6 @@
 #include <cmath>
 
 namespace msf {
-namespace {
-
-// The rectangle of undistorted coordinates that the image covers.
-void UndistortedBounds(const Camera& camera, Eigen::Vector2f& lower, Eigen::Vector2f& upper) {
-  lower = Eigen::Vector2f(0, 0);
-  upper = Eigen::Vector2f(camera.width, camera.height);
-  for (const double u : {0.0, camera.width / 2.0, double(camera.width)}) {
-    for (const double v : {0.0, camera.height / 2.0, double(camera.height)}) {
-      const Eigen::Vector2f corner = camera.Undistort({u, v}).cast<float>();
-      lower = lower.cwiseMin(corner);
-      upper = upper.cwiseMax(corner);
-    }
-  }
-}
-
-}  // namespace
-
 void FrameFeatures::Append(const FrameFeatures& other, int i, float static_probability) {
   image_px.push_back(other.image_px[i]);
   uv_px.push_back(other.uv_px[i]);
@@ -33,10 +16,10 @@ void FrameFeatures::Append(const FrameFeatures& other, int i, float static_proba
 }
 
 void FrameFeatures::BuildGrid(const Camera& camera) {
-  Eigen::Vector2f lower, upper;
-  UndistortedBounds(camera, lower, upper);
-  grid_origin_px_ = lower;
-  cells_per_px_ = Eigen::Vector2f(kGridColumns, kGridRows).cwiseQuotient(upper - lower);
+  const Eigen::AlignedBox2d image = camera.IdealBounds();
+  grid_origin_px_ = image.min().cast<float>();
+  cells_per_px_ =
+      Eigen::Vector2f(kGridColumns, kGridRows).cwiseQuotient(image.sizes().cast<float>());
 
   // Counting sort by cell keeps the points of a row of cells together in memory.
   std::vector<int32_t> cell_of(size());

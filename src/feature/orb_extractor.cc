@@ -44,7 +44,8 @@ Status OrbOptions::Check() const {
   if (num_features < 1) return Status::Error("feature.num_features must be at least 1");
   if (num_levels < 1 || num_levels > 32)
     return Status::Error("feature.num_levels must be from 1 to 32");
-  if (!(scale_factor > 1)) return Status::Error("feature.scale_factor must be above 1");
+  if (!(scale_factor > 1 && scale_factor <= 4))
+    return Status::Error("feature.scale_factor must be above 1 and at most 4");
   if (min_fast_threshold < 1 || fast_threshold < min_fast_threshold || fast_threshold > 254) {
     return Status::Error("feature: 1 <= min_fast_threshold <= fast_threshold <= 254 is needed");
   }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
@@ -271,7 +272,8 @@ TEST(OrbExtractor, PointsAreUndistorted) {
 TEST(OrbExtractor, BadOptionsAndFramesAreRefused) {
   EXPECT_TRUE(OrbOptions{}.Check().ok());
   EXPECT_FALSE(OrbOptions{.num_features = 0}.Check().ok());
-  EXPECT_FALSE(OrbOptions{.scale_factor = 1}.Check().ok());
+  for (const double factor : {-1.2, 1.0, 4.5, std::nan("")})
+    EXPECT_FALSE(OrbOptions{.scale_factor = factor}.Check().ok()) << factor;
   EXPECT_FALSE((OrbOptions{.fast_threshold = 5, .min_fast_threshold = 7}.Check().ok()));
   EXPECT_FALSE(OrbOptions{.even_share = 1.5}.Check().ok());
   EXPECT_THROW(OrbExtractor({.num_levels = 0}), ContractViolation);

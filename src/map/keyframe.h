@@ -17,7 +17,7 @@ struct KeyFrame {
   MapId map_id;
   FrameId frame_id;
   double time_s = 0;
-  // What the camera saw: never changes once the keyframe is made.
+  // What the camera saw. Replaced only by Map::SetFeatures.
   std::shared_ptr<const FrameFeatures> features;
   std::shared_ptr<const BagOfWords> words;         // null until mapping has described it
   std::vector<std::array<uint8_t, 3>> colors_bgr;  // per feature

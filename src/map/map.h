@@ -24,8 +24,10 @@ class Map {
 
   const Camera& camera() const { return *camera_; }
   const ScaleLevels& levels() const { return levels_; }
-  // Grows with every change: who caches something compares it.
+  // Grows with every change but those of static weights, which have a count of their own: who
+  // caches something compares them.
   uint64_t version() const { return version_; }
+  uint64_t weights_version() const { return weights_version_; }
   // Grows when the map is corrected as a whole (loop, merge, full bundle adjustment): what a solver
   // computed from an older copy must not be applied any more.
   uint64_t epoch() const { return epoch_; }
@@ -125,6 +127,7 @@ class Map {
   std::shared_ptr<const Camera> camera_;
   ScaleLevels levels_;
   uint64_t version_ = 0;
+  uint64_t weights_version_ = 0;
   uint64_t epoch_ = 0;
   MapId active_map_;
   int64_t num_maps_ = 0;

@@ -1,5 +1,6 @@
 // The half of Map that deals with points.
 #include <algorithm>
+#include <bit>
 #include <climits>
 #include <cmath>
 
@@ -65,25 +66,25 @@ int Map::NumPoints(MapId map) const {
 
 std::vector<MapPointId> Map::PointsSeenBy(std::span<const KeyFrameId> keyframes) const {
   // Neighbouring keyframes see the same points, tens of thousands in all: marking them is several
-  // times faster than sorting.
-  std::vector<uint8_t> is_seen(points_.size(), 0);
-  size_t first = points_.size(), last = 0, count = 0;
+  // times faster than sorting. One bit per id, since an hour makes millions of ids.
+  constexpr size_t kBits = 64;
+  std::vector<uint64_t> is_seen(points_.size() / kBits + 1, 0);
+  size_t count = 0;
   for (const KeyFrameId id : keyframes) {
     const KeyFrame* keyframe = FindKeyFrame(id);
     if (!keyframe) continue;
     for (const MapPointId point : keyframe->points) {
       if (!point.valid()) continue;
       const auto i = static_cast<size_t>(point.value());
-      count += is_seen[i] == 0;
-      is_seen[i] = 1;
-      first = std::min(first, i);
-      last = std::max(last, i);
+      is_seen[i / kBits] |= uint64_t{1} << i % kBits;
+      ++count;
     }
   }
   std::vector<MapPointId> seen;
   seen.reserve(count);
-  for (size_t i = first; i <= last && i < is_seen.size(); ++i) {
-    if (is_seen[i] != 0) seen.emplace_back(static_cast<int64_t>(i));
+  for (size_t word = 0; word < is_seen.size(); ++word) {
+    for (uint64_t left = is_seen[word]; left != 0; left &= left - 1)
+      seen.emplace_back(static_cast<int64_t>(word * kBits + std::countr_zero(left)));
   }
   return seen;
 }
@@ -97,6 +98,7 @@ void Map::ObserveStaticProbability(MapPointId id, float probability) {
   constexpr float kRate = 0.1f;
   MapPoint& point = MutablePoint(id);
   if (probability >= 1 && point.static_weight >= 1) return;
+  ++weights_version_;
   const float now = LogOdds(point.static_weight);
   const float updated = now + kRate * (LogOdds(probability) - now);
   point.static_weight = 1 / (1 + std::exp(-updated));

@@ -7,7 +7,7 @@
 namespace msf {
 
 // Culls the neighbours of `around` whose close points are almost all seen by several other
-// keyframes at the same or a finer level. The root of the tree and ends of loops stay. Returns
+// keyframes, at most one level coarser. The root of the tree and ends of loops stay. Returns
 // those that went.
 std::vector<KeyFrameId> CullRedundantKeyFrames(const MappingOptions& options, KeyFrameId around,
                                                Map& map);

@@ -45,7 +45,7 @@ struct MappingOptions {
     visit("redundant_share", redundant_share,
           "a keyframe goes when this share of its close points ...");
     visit("redundant_observers", redundant_observers,
-          "... is seen by so many others at the same or a finer level");
+          "... is seen by so many others, at most one level coarser");
     visit("close_depth_baselines", close_depth_baselines,
           "depths below this many virtual baselines are close (reliable)");
     visit("bundle", bundle, "");

@@ -15,6 +15,7 @@ ViewProjector::ViewProjector(const Rigid3d& T_cw, const Camera& camera, const Sc
       R_cw_(T_cw.RotationMatrix()),
       t_cw_(T_cw.translation()),
       centre_w_(-(R_cw_.transpose() * t_cw_)),
+      image_(camera.IdealBounds()),
       min_view_cosine_(min_view_cosine) {}
 
 std::optional<ProjectedPoint> ViewProjector::operator()(const PointSnapshot& point) const {
@@ -22,8 +23,7 @@ std::optional<ProjectedPoint> ViewProjector::operator()(const PointSnapshot& poi
   if (!(p_c.z() > 0)) return std::nullopt;
   ProjectedPoint projected;
   projected.uv_px = camera_.Project(p_c);
-  const double u = projected.uv_px.x(), v = projected.uv_px.y();
-  if (!(u >= 0 && u < camera_.width && v >= 0 && v < camera_.height)) return std::nullopt;
+  if (!image_.contains(projected.uv_px)) return std::nullopt;
   const Eigen::Vector3d ray = point.p_w - centre_w_;
   const double distance_m = ray.norm();
   if (distance_m < kNearSlack * point.min_distance_m ||
@@ -31,15 +31,9 @@ std::optional<ProjectedPoint> ViewProjector::operator()(const PointSnapshot& poi
     return std::nullopt;
   projected.view_cosine = ray.dot(point.normal) / distance_m;
   if (projected.view_cosine < min_view_cosine_) return std::nullopt;
-  projected.u_right_px = u - camera_.bf / p_c.z();
+  projected.u_right_px = projected.uv_px.x() - camera_.bf / p_c.z();
   projected.level = levels_.Predict(point.max_distance_m / distance_m);
   return projected;
-}
-
-std::optional<ProjectedPoint> ProjectIntoView(const PointSnapshot& point, const Rigid3d& T_cw,
-                                              const Camera& camera, const ScaleLevels& levels,
-                                              double min_view_cosine) {
-  return ViewProjector(T_cw, camera, levels, min_view_cosine)(point);
 }
 
 }  // namespace msf

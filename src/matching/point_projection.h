@@ -36,17 +36,14 @@ struct ProjectedPoint {
   int level = 0;           // at which it should look as it did
 };
 
-// Empty when the point lies behind the camera, outside the image, outside [0.8, 1.2] times its
-// distance range, or is seen from more than 60 degrees off its mean direction (`min_view_cosine`).
-std::optional<ProjectedPoint> ProjectIntoView(const PointSnapshot& point, const Rigid3d& T_cw,
-                                              const Camera& camera, const ScaleLevels& levels,
-                                              double min_view_cosine = 0.5);
-
-// For many points of one view: the pose as matrices, computed once.
+// Projects points into one view: what does not depend on the point is computed once.
 class ViewProjector {
  public:
   ViewProjector(const Rigid3d& T_cw, const Camera& camera, const ScaleLevels& levels,
                 double min_view_cosine = 0.5);
+  // Empty when the point lies behind the camera, outside the image, outside [0.8, 1.2] times its
+  // distance range, or is seen from more than 60 degrees off its mean direction
+  // (`min_view_cosine`).
   std::optional<ProjectedPoint> operator()(const PointSnapshot& point) const;
 
  private:
@@ -55,6 +52,7 @@ class ViewProjector {
   Eigen::Matrix3d R_cw_;
   Eigen::Vector3d t_cw_;
   Eigen::Vector3d centre_w_;
+  Eigen::AlignedBox2d image_;
   double min_view_cosine_;
 };
 

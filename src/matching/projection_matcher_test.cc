@@ -94,7 +94,7 @@ class PointProjectionTest : public ::testing::Test {
   }
   std::optional<ProjectedPoint> ProjectFrom(const Eigen::Vector3d& centre_w, double yaw_rad = 0) {
     const Eigen::Quaterniond R_wc(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitY()));
-    return ProjectIntoView(point_, Rigid3d(R_wc, centre_w).Inverse(), camera_, levels_);
+    return ViewProjector(Rigid3d(R_wc, centre_w).Inverse(), camera_, levels_)(point_);
   }
   const Camera camera_ = *Camera::Preset("simulated");
   const ScaleLevels levels_{8, 1.2};
@@ -111,6 +111,18 @@ TEST_F(PointProjectionTest, PredictsPlaceDisparityAndLevel) {
   EXPECT_NEAR(seen->level, 2, 1);
   // From twice as near it looks larger: a higher level.
   EXPECT_GT(ProjectFrom(0.5 * point_.p_w)->level, seen->level);
+}
+
+// Undistorted, the image of a lens with barrel distortion reaches beyond its own rectangle.
+TEST_F(PointProjectionTest, TheImageEndsWhereTheLensShowsNoMore) {
+  Camera barrel = camera_;
+  barrel.k1 = -0.2;
+  point_.p_w = {-1.3, 0, 2};  // 341 px left of the middle, 319.5 px are half of the width
+  point_.normal = point_.p_w.normalized();
+  point_.max_distance_m = point_.p_w.norm() * levels_.scale(2);
+  const Rigid3d here;
+  EXPECT_FALSE(ViewProjector(here, camera_, levels_)(point_));
+  EXPECT_TRUE(ViewProjector(here, barrel, levels_)(point_));
 }
 
 TEST_F(PointProjectionTest, LeavesOutWhatCannotBeSeen) {

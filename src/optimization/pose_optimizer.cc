@@ -148,7 +148,6 @@ PoseEstimate OptimizePose(const Camera& camera, const Rigid3d& T_cw_initial,
   estimate.T_cw = T_cw;
   estimate.inlier = problem.active();
   estimate.num_inliers = problem.num_active();
-  estimate.information = problem.Linearize(T_cw, /*robust=*/false).information;
   return estimate;
 }
 

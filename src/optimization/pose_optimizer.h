@@ -46,8 +46,6 @@ struct PoseEstimate {
   std::vector<uint8_t>
       inlier;           // per observation: within its gate at T_cw; never for one with weight 0
   int num_inliers = 0;  // 0: no pose could be found, T_cw is the initial one
-  Matrix6d information =
-      Matrix6d::Zero();  // of the twist d in Exp(d) * T_cw, from the inliers without kernel
 };
 
 // Minimises sum_i weight_i rho(r_i^T W_i r_i) over T_cw by Levenberg-Marquardt with T <- Exp(d) T.

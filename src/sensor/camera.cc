@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <map>
+#include <vector>
 
 namespace msf {
 namespace {
@@ -73,25 +73,48 @@ const std::map<std::string, Camera>& Presets() {
   return presets;
 }
 
+struct Limits {
+  const char* key;
+  double value, least, most;
+  const char* meaning;
+};
+
+// Wider than cameras are, but a slip (another unit, the inverse) lies outside.
+std::vector<Limits> LimitsOf(const Camera& c) {
+  constexpr const char* kFocalLength = "focal length, px; there is no default";
+  constexpr const char* kDistortion = "distortion, as OpenCV has it";
+  return {{"width", double(c.width), 1, 32768, "px"},
+          {"height", double(c.height), 1, 32768, "px"},
+          {"fx", c.fx, 10, 1e5, kFocalLength},
+          {"fy", c.fy, 10, 1e5, kFocalLength},
+          {"k1", c.k1, -100, 100, kDistortion},
+          {"k2", c.k2, -100, 100, kDistortion},
+          {"p1", c.p1, -100, 100, kDistortion},
+          {"p2", c.p2, -100, 100, kDistortion},
+          {"k3", c.k3, -100, 100, kDistortion},
+          {"bf", c.bf, 1e-3, 1e5, "fx times the stereo baseline in metres, such as 40"},
+          {"depth_factor", c.depth_factor, 1, 1e6,
+           "depth image value of one metre, such as 5000 or 1000"},
+          {"disparity_noise_px", c.disparity_noise_px, 1e-3, 100, "noise of bf / depth, such as 1"},
+          {"fps", c.fps, 1e-3, 1e4, "frames per second, such as 30"},
+          {"rolling_shutter_s", c.rolling_shutter_s, 0, 1,
+           "first row to last, s, such as 0.023; 0 for a global shutter"},
+          {"stamp_lag_s", c.stamp_lag_s, -0.1, 0.1, "s, such as 0.006"}};
+}
+
 }  // namespace
 
 Status Camera::Check() const {
-  if (width <= 0 || height <= 0) return Status::Error("camera: width and height must be positive");
-  if (!(fx > 0 && fy > 0)) return Status::Error("camera: fx and fy must be positive");
-  if (!(bf > 0)) return Status::Error("camera: bf must be positive");
-  if (!(depth_factor > 0)) return Status::Error("camera: depth_factor must be positive");
-  if (!(disparity_noise_px > 0))
-    return Status::Error("camera: disparity_noise_px must be positive");
-  if (!(fps > 0)) return Status::Error("camera: fps must be positive");
-  if (!(rolling_shutter_s >= 0 && rolling_shutter_s < 1))
-    return Status::Error("camera: rolling_shutter_s must be from 0 to below 1 s");
-  if (!(std::abs(stamp_lag_s) <= 0.1))
-    return Status::Error("camera: stamp_lag_s must be from -0.1 to 0.1 s");
-  for (const double value : {cx, cy, k1, k2, p1, p2, k3, disparity_noise_px}) {
-    if (!std::isfinite(value))
-      return Status::Error("camera: every parameter must be a finite number");
+  for (const Limits& limits : LimitsOf(*this)) {
+    if (limits.value >= limits.least && limits.value <= limits.most) continue;
+    return Status::Error(fmt::format("camera: {} is {}, but must be from {} to {} ({})", limits.key,
+                                     limits.value, limits.least, limits.most, limits.meaning));
   }
-  return Status::Ok();
+  if (cx > 0 && cx < width && cy > 0 && cy < height) return Status::Ok();
+  return Status::Error(
+      fmt::format("camera: cx and cy are {} and {}, but must lie inside the image of {}x{} px "
+                  "(principal point; there is no default)",
+                  cx, cy, width, height));
 }
 
 Eigen::Vector2d Camera::Distort(const Eigen::Vector2d& ideal_px) const {
@@ -114,6 +137,14 @@ Eigen::Vector2d Camera::Undistort(const Eigen::Vector2d& image_px) const {
     if (step.squaredNorm() < 1e-14) break;
   }
   return ideal_px;
+}
+
+Eigen::AlignedBox2d Camera::IdealBounds() const {
+  Eigen::AlignedBox2d bounds(Eigen::Vector2d::Zero(), Eigen::Vector2d(width, height));
+  for (const double u : {0.0, width / 2.0, double(width)}) {
+    for (const double v : {0.0, height / 2.0, double(height)}) bounds.extend(Undistort({u, v}));
+  }
+  return bounds;
 }
 
 StatusOr<Camera> Camera::Preset(const std::string& name) {

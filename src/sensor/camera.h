@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <string>
 #include <vector>
 
@@ -33,10 +34,10 @@ struct Camera {
   void Visit(Visitor& visit) {
     visit("width", width, "image width, px");
     visit("height", height, "image height, px");
-    visit("fx", fx, "focal length, px");
-    visit("fy", fy, "focal length, px");
-    visit("cx", cx, "principal point, px");
-    visit("cy", cy, "principal point, px");
+    visit("fx", fx, "focal length, px; must be given");
+    visit("fy", fy, "focal length, px; must be given");
+    visit("cx", cx, "principal point, px, inside the image; must be given");
+    visit("cy", cy, "principal point, px, inside the image; must be given");
     visit("k1", k1, "radial distortion");
     visit("k2", k2, "radial distortion");
     visit("p1", p1, "tangential distortion");
@@ -56,6 +57,7 @@ struct Camera {
         "trajectory tells where the camera was at the time stamps");
   }
   Status Check() const;
+  bool operator==(const Camera&) const = default;
 
   bool HasDistortion() const { return k1 != 0 || k2 != 0 || p1 != 0 || p2 != 0 || k3 != 0; }
   double baseline_m() const { return bf / fx; }
@@ -70,6 +72,9 @@ struct Camera {
   // Between ideal pixels and the pixels of the distorted image.
   Eigen::Vector2d Distort(const Eigen::Vector2d& ideal_px) const;
   Eigen::Vector2d Undistort(const Eigen::Vector2d& image_px) const;
+
+  // A rectangle of ideal pixels that holds the image, distorted or not.
+  Eigen::AlignedBox2d IdealBounds() const;
 
   // A known camera: "tum_fr1", "tum_fr2", "tum_fr3", "bonn" or "simulated"; an error lists the
   // names.

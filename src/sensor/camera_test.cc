@@ -32,12 +32,33 @@ TEST(Camera, UnknownPresetListsTheKnown) {
   EXPECT_FALSE(Camera{}.Check().ok());
 }
 
-TEST(Camera, NoiseOfDepthMustBePositive) {
-  for (const double noise_px : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
-    Camera camera = *Camera::Preset("simulated");
-    camera.disparity_noise_px = noise_px;
-    EXPECT_FALSE(camera.Check().ok()) << noise_px;
+TEST(Camera, ValuesThatNoCameraHasAreNamed) {
+  struct Case {
+    double Camera::*value;
+    const char* key;
+    std::vector<double> wrong;
+  };
+  const double nan = std::nan("");
+  for (const Case& c :
+       {Case{&Camera::fx, "fx is", {0, -525, 0.5, 1e6, nan}}, Case{&Camera::fy, "fy is", {0, nan}},
+        Case{&Camera::cx, "cx and cy are", {0, -1, 640, nan}},
+        Case{&Camera::cy, "cx and cy are", {0, 480, HUGE_VAL}},
+        Case{&Camera::k3, "k3 is", {101, -HUGE_VAL, nan}},
+        Case{&Camera::bf, "bf is", {0, -40, 1e6, nan}},
+        Case{&Camera::depth_factor, "such as 5000 or 1000", {0, 1e-6, 2e-4, 1e7}},
+        Case{&Camera::disparity_noise_px, "noise", {0, -1, nan, HUGE_VAL}},
+        Case{&Camera::fps, "fps is", {0, -30, 1e5, nan}},
+        Case{&Camera::rolling_shutter_s, "rolling_shutter_s is", {-1, 23, nan}},
+        Case{&Camera::stamp_lag_s, "stamp_lag_s is", {6, nan}}}) {
+    for (const double wrong : c.wrong) {
+      Camera camera = *Camera::Preset("simulated");
+      camera.*c.value = wrong;
+      EXPECT_NE(camera.Check().message().find(c.key), std::string::npos) << c.key << " " << wrong;
+    }
   }
+  Camera camera = *Camera::Preset("simulated");
+  camera.width = 0;
+  EXPECT_FALSE(camera.Check().ok());
 }
 
 }  // namespace

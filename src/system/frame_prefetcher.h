@@ -2,6 +2,7 @@
 // tracking.
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <optional>
 #include <thread>
@@ -31,9 +32,18 @@ class FramePrefetcher {
  private:
   void Run(size_t count, const std::function<StatusOr<RgbdFramePtr>(size_t)>& load) {
     for (size_t i = 0; i < count; ++i) {
-      if (!queue_.Push(load(i))) return;
+      if (!queue_.Push(TryToLoad(i, load))) return;
     }
     queue_.Close();
+  }
+
+  static StatusOr<RgbdFramePtr> TryToLoad(
+      size_t i, const std::function<StatusOr<RgbdFramePtr>(size_t)>& load) {
+    try {
+      return load(i);
+    } catch (const std::exception& error) {
+      return Status::Error(error.what());
+    }
   }
 
   BoundedQueue<StatusOr<RgbdFramePtr>> queue_;

@@ -36,8 +36,9 @@ StatusOr<std::shared_ptr<const Vocabulary>> LoadVocabulary(const std::string& fi
 }  // namespace
 
 Status SystemOptions::Check() const {
-  for (const Status& status : {detection.Check(), dynamic.Check(), feature.Check(), noise.Check(),
-                               tracking.Check(), mapping.Check(), loop_closing.Check()}) {
+  for (const Status& status :
+       {detection.Check(), dynamic.Check(), feature.Check(), noise.Check(), tracking.Check(),
+        relocalization.Check(), mapping.Check(), loop_closing.Check()}) {
     if (!status.ok()) return status;
   }
   if (WantsDetector()) return detector.Check();
@@ -49,17 +50,20 @@ class System::Impl {
  public:
   Impl(const SystemOptions& options, const Camera& camera,
        const std::shared_ptr<const Vocabulary>& vocabulary, std::unique_ptr<Detector> detector);
+  ~Impl() { cancel_full_bundle_ = true; }
 
   // The filter of dynamic points; none in mode off.
   Status MakeFilter(const std::vector<std::string>& class_names);
 
   StatusOr<TrackingResult> Track(const RgbdFramePtr& frame);
+  Status health() const;
   Reconstruction Finish();
   void AddObserver(std::shared_ptr<Observer> observer) {
     observers_.push_back(std::move(observer));
   }
 
  private:
+  Status CheckOrder(const RgbdFrame& frame) const;
   void OfferToDetector(const RgbdFramePtr& frame, StageTimings& timings_ms);
   FrameFeatures Extract(const RgbdFrame& frame, StageTimings& timings_ms);
   DynamicResult Classify(const RgbdFramePtr& frame, const FrameFeatures& features);
@@ -89,7 +93,9 @@ class System::Impl {
   FrameDelay frame_delay_;
   Hindsight hindsight_;
   std::vector<std::shared_ptr<Observer>> observers_;
-  uint64_t filter_epoch_ = 0;        // of the map that the filter's poses belong to
+  MapId filter_map_;                 // the filter's last pose belongs to this map
+  uint64_t filter_epoch_ = 0;        // in this epoch
+  FrameId last_id_;                  // of the present frame
   double last_time_s_ = -1e300;      // of the present frame
   double previous_time_s_ = -1e300;  // of the one before it
   std::atomic<int> num_loops_ = 0, num_merges_ = 0;
@@ -134,11 +140,9 @@ System::Impl::Impl(const SystemOptions& options, const Camera& camera,
 }
 
 StatusOr<TrackingResult> System::Impl::Track(const RgbdFramePtr& frame) {
-  if (const Status status = CheckFrame(*frame); !status.ok()) return status;
-  if (!(frame->time_s > last_time_s_)) {
-    return Status::Error("frame " + std::to_string(frame->id.value()) +
-                         " is not later than the one before it");
-  }
+  MSF_RETURN_IF_ERROR(CheckFrame(*frame));
+  MSF_RETURN_IF_ERROR(CheckOrder(*frame));
+  last_id_ = frame->id;
   previous_time_s_ = last_time_s_;
   last_time_s_ = frame->time_s;
 
@@ -183,6 +187,20 @@ StatusOr<TrackingResult> System::Impl::Track(const RgbdFramePtr& frame) {
   return result;
 }
 
+Status System::Impl::CheckOrder(const RgbdFrame& frame) const {
+  const std::string name = "frame " + std::to_string(frame.id.value());
+  if (*frame.camera != *camera_) {
+    return Status::Error(name + " has another camera than the system");
+  }
+  if (!frame.id.valid() || frame.id <= last_id_) {
+    return Status::Error(name + " comes after frame " + std::to_string(last_id_.value()) +
+                         ": ids begin at 0 or later and rise");
+  }
+  if (!(frame.time_s > last_time_s_))
+    return Status::Error(name + " is not later than the one before it");
+  return Status::Ok();
+}
+
 void System::Impl::OfferToDetector(const RgbdFramePtr& frame, StageTimings& timings_ms) {
   const StageTimer timer(timings_ms, "detection");
   if (options_.wait_for_mapping) detection_source_->WaitUntilTaken();
@@ -207,11 +225,15 @@ DynamicResult System::Impl::Classify(const RgbdFramePtr& frame, const FrameFeatu
 }
 
 void System::Impl::TakePose(const TrackingResult& result) {
-  const uint64_t epoch = map_.Read()->epoch();
-  const bool same_world = !result.started_map && epoch == filter_epoch_;
+  if (!result.T_cw) {
+    filter_->TakePose(std::nullopt, /*same_world=*/true, {});
+    return;
+  }
+  const bool same_world = result.map_id == filter_map_ && result.epoch == filter_epoch_;
   filter_->TakePose(result.T_cw, same_world, result.landmarks);
-  if (result.T_cw) camera_roll_.Add(*result.T_cw, same_world);
-  filter_epoch_ = epoch;
+  camera_roll_.Add(*result.T_cw, same_world);
+  filter_map_ = result.map_id;
+  filter_epoch_ = result.epoch;
 }
 
 MappingLoad System::Impl::Load() const {
@@ -278,6 +300,17 @@ void System::Impl::LookBack(std::vector<TrackedFrame> frames) {
   }
 }
 
+Status System::Impl::health() const {
+  if (!mapping_worker_) return Status::Ok();
+  for (const auto& [what, status] : {std::pair("mapping", mapping_worker_->health()),
+                                     std::pair("loop closing", loop_worker_->health()),
+                                     std::pair("bundle adjustment", full_bundle_worker_->health()),
+                                     std::pair("looking back", hindsight_worker_->health())}) {
+    if (!status.ok()) return Status::Error(std::string(what) + " failed: " + status.message());
+  }
+  return Status::Ok();
+}
+
 Reconstruction System::Impl::Finish() {
   if (mapping_worker_) {
     mapping_worker_->Finish();
@@ -321,6 +354,7 @@ Reconstruction System::Impl::Resolve(const Map& map) const {
   result.num_merges = num_merges_;
   result.num_without_hindsight = hindsight_.num_left_out();
   if (detection_source_) result.detection = detection_source_->statistics();
+  result.health = health();
   return result;
 }
 
@@ -369,6 +403,8 @@ System::~System() = default;
 void System::AddObserver(std::shared_ptr<Observer> observer) {
   impl_->AddObserver(std::move(observer));
 }
+
+Status System::health() const { return impl_->health(); }
 
 StatusOr<TrackingResult> System::Track(const RgbdFramePtr& frame) { return impl_->Track(frame); }
 

@@ -40,6 +40,7 @@ struct Reconstruction {
   // HindsightOptions::max_frames.
   int num_without_hindsight = 0;
   DetectionStatistics detection;
+  Status health;  // see System::health()
 };
 
 class System {
@@ -59,9 +60,13 @@ class System {
   void AddObserver(std::shared_ptr<Observer> observer);
 
   // Locates the camera of one frame. Frames come in the order of time from one thread; a frame
-  // whose images do not fit the camera, or whose time is not later than the last one's, is an error
-  // and changes nothing.
+  // whose images or camera do not fit, whose id is not greater or whose time is not later than the
+  // last one's, is an error and changes nothing.
   StatusOr<TrackingResult> Track(const RgbdFramePtr& frame);
+
+  // An error once mapping or loop closing has failed beside tracking, of which nothing but a bug or
+  // a lack of memory is known to be a reason. Frames are still located, but the map grows no more.
+  Status health() const;
 
   // Ends all work in order (mapping, loop closing), and resolves the trajectory against the final
   // map. Track() must not follow.

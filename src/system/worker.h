@@ -5,10 +5,12 @@
 #include <atomic>
 #include <exception>
 #include <functional>
+#include <string>
 #include <thread>
 #include <utility>
 
 #include "util/bounded_queue.h"
+#include "util/status.h"
 
 namespace msf {
 
@@ -17,7 +19,11 @@ class Worker {
  public:
   Worker(size_t capacity, std::function<void(T)> process)
       : queue_(capacity), process_(std::move(process)), thread_([this] { Run(); }) {}
-  ~Worker() { Close(); }
+  // What still waits is dropped.
+  ~Worker() {
+    dropping_ = true;
+    Close();
+  }
 
   // Waits while the queue is full.
   void Push(T item) {
@@ -30,13 +36,10 @@ class Worker {
   int queued() const { return static_cast<int>(queue_.size()); }
   bool idle() const { return pending_ == 0; }
 
-  // Processes what is queued and joins. Throws what `process` threw, if it did: nothing was
-  // processed after that.
-  void Finish() {
-    Close();
-    if (const std::exception_ptr failure = std::exchange(failure_, nullptr))
-      std::rethrow_exception(failure);
-  }
+  // Processes what is queued and joins.
+  void Finish() { Close(); }
+  // An error once `process` has thrown: nothing is processed after that.
+  Status health() const { return failed_ ? Status::Error(failure_) : Status::Ok(); }
 
  private:
   void Close() {
@@ -46,7 +49,7 @@ class Worker {
 
   void Run() {
     while (std::optional<T> item = queue_.Pop()) {
-      if (!failure_) Process(std::move(*item));
+      if (!failed_ && !dropping_) Process(std::move(*item));
       --pending_;
     }
   }
@@ -54,16 +57,25 @@ class Worker {
   void Process(T item) {
     try {
       process_(std::move(item));
+    } catch (const std::exception& error) {
+      Fail(error.what());
     } catch (...) {
-      failure_ = std::current_exception();
+      Fail("an unknown exception");
     }
+  }
+
+  void Fail(const std::string& why) {
+    failure_ = why;
+    failed_ = true;
   }
 
   BoundedQueue<T> queue_;
   std::atomic<int> pending_ = 0;
   std::function<void(T)> process_;
-  std::exception_ptr failure_;  // written by the thread, read after it was joined
-  std::thread thread_;          // last: it starts when all else is ready
+  std::string failure_;  // written once, before failed_ is set
+  std::atomic<bool> failed_ = false;
+  std::atomic<bool> dropping_ = false;
+  std::thread thread_;  // last: it starts when all else is ready
 };
 
 }  // namespace msf

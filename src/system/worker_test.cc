@@ -20,14 +20,16 @@ TEST(Worker, ProcessesEverythingInOrderBeforeItFinishes) {
   EXPECT_TRUE(worker.idle());
 }
 
-TEST(Worker, AFailureReachesTheOneWhoWaits) {
+TEST(Worker, AFailureIsToldAndEndsTheWork) {
   int processed = 0;
   Worker<int> worker(8, [&](int item) {
     ++processed;
     if (item == 1) throw std::runtime_error("broken");
   });
+  EXPECT_TRUE(worker.health().ok());
   for (int i = 0; i < 4; ++i) worker.Push(i);
-  EXPECT_THROW(worker.Finish(), std::runtime_error);
+  worker.Finish();
+  EXPECT_EQ(worker.health().message(), "broken");
   EXPECT_EQ(processed, 2) << "nothing is processed after a failure";
 }
 
@@ -54,6 +56,14 @@ TEST(FramePrefetcher, HandsOutAllFramesAndThenNothing) {
     EXPECT_EQ((**frame)->id, FrameId(i));
   }
   EXPECT_FALSE(prefetcher.Next().has_value());
+}
+
+TEST(FramePrefetcher, AnExceptionIsAFrameThatCannotBeRead) {
+  const auto load = [](size_t) -> StatusOr<RgbdFramePtr> { throw std::runtime_error("too large"); };
+  FramePrefetcher prefetcher(1, 2, load);
+  const std::optional<StatusOr<RgbdFramePtr>> frame = prefetcher.Next();
+  ASSERT_TRUE(frame.has_value());
+  EXPECT_EQ(frame->message(), "too large");
 }
 
 TEST(FramePrefetcher, CanBeLeftBeforeTheEnd) {

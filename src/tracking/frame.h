@@ -15,6 +15,7 @@ struct Frame {
   RgbdFramePtr image;
   std::shared_ptr<const FrameFeatures> features;
   std::shared_ptr<const FrameFeatures> removed;  // what seems to move; only to judge the map by
+  bool relocalized = false;                      // its pose was found anew, not followed
   bool shutter_left_in = false;                  // a rolling shutter was not undone in either
   std::shared_ptr<const BagOfWords> words;       // null until somebody needs them
   Rigid3d T_cw;

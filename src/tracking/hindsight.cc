@@ -48,22 +48,21 @@ void Hindsight::Match(const TrackedFrame& frame) {
   }
 }
 
-std::optional<Rigid3d> Hindsight::Approach(const TrackedFrame& tracked) {
-  const SharedMap::Reader map = map_.Read();
-  if (!map->Knows(tracked.reference)) return std::nullopt;
+std::optional<Rigid3d> Hindsight::Approach(const Map& map, const TrackedFrame& tracked) {
+  if (!map.Knows(tracked.reference)) return std::nullopt;
   Frame frame;
-  frame.T_cw = tracked.T_c_reference * map->PoseOf(tracked.reference);
+  frame.T_cw = tracked.T_c_reference * map.PoseOf(tracked.reference);
   for (const MapPointId point : tracked.points) {
-    const MapPointId now = map->Resolve(point);
-    if (map->FindPoint(now)) frame.points.push_back(now);
+    const MapPointId now = map.Resolve(point);
+    if (map.FindPoint(now)) frame.points.push_back(now);
   }
-  local_map_.Update(*map, frame, context_.options.max_local_keyframes,
+  local_map_.Update(map, frame, context_.options.max_local_keyframes,
                     context_.options.max_neighbours);
   return frame.T_cw;
 }
 
 void Hindsight::MatchOne(const TrackedFrame& frame) {
-  const std::optional<Rigid3d> T_cw = Approach(frame);
+  const std::optional<Rigid3d> T_cw = Approach(*map_.Read(), frame);
   if (!T_cw) return;
   const LocalMatches local = MatchLocalPoints(context_, local_map_.points(), *frame.features, *T_cw,
                                               {}, context_.options.local_radius_factor_refined);
@@ -71,7 +70,14 @@ void Hindsight::MatchOne(const TrackedFrame& frame) {
 }
 
 void Hindsight::MatchFirst(const TrackedFrame& first, const TrackedFrame& second) {
-  const std::optional<Rigid3d> T_cw_second = Approach(second), T_cw_first = Approach(first);
+  std::optional<Rigid3d> T_cw_first, T_cw_second;
+  uint64_t epoch = 0;
+  {
+    const SharedMap::Reader map = map_.Read();
+    epoch = map->epoch();
+    T_cw_second = Approach(*map, second);
+    T_cw_first = Approach(*map, first);
+  }
   if (!T_cw_first || !T_cw_second) return;
   const std::optional<FirstFrame> settled =
       SettleFirstFrame(context_, local_map_.points(), *first.features, *T_cw_first, *T_cw_second,
@@ -83,6 +89,8 @@ void Hindsight::MatchFirst(const TrackedFrame& first, const TrackedFrame& second
   Remember(first.id, *settled->features, settled->matches);
   const SharedMap::Writer map = map_.Write();
   const KeyFrame* keyframe = map->FindKeyFrame(first.reference);
+  // A correction of the whole map since then would have moved what was found.
+  if (map->epoch() != epoch) return;
   if (!keyframe || keyframe->features != first.features) return;
   map->SetFeatures(keyframe->id, settled->features);
   map->SetPose(keyframe->id, settled->T_cw);

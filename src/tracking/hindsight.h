@@ -74,7 +74,7 @@ class Hindsight {
     std::vector<Sighting> sightings;
   };
   // Moves local_map_ to the frame, and says where that is; empty when its keyframe is gone.
-  std::optional<Rigid3d> Approach(const TrackedFrame& frame);
+  std::optional<Rigid3d> Approach(const Map& map, const TrackedFrame& frame);
   void MatchOne(const TrackedFrame& frame);
   void MatchFirst(const TrackedFrame& first, const TrackedFrame& second);
   void Remember(FrameId id, const FrameFeatures& features, const std::vector<PointMatch>& matches);

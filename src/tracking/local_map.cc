@@ -11,10 +11,15 @@ void LocalMap::Update(const Map& map, const Frame& frame, int max_keyframes, int
   std::vector<KeyFrameId> keyframes = SelectKeyFrames(map, frame, max_keyframes, max_neighbours);
   if (keyframes.empty()) return;  // a frame without points leaves the former neighbourhood in place
   T_cw_best_keyframe_ = map.PoseOf(best_keyframe_);
-  if (keyframes == keyframes_ && map_version_ == map.version()) return;
-  keyframes_ = std::move(keyframes);
-  map_version_ = map.version();
-  CopyPoints(map);
+  if (keyframes != keyframes_ || map_version_ != map.version()) {
+    keyframes_ = std::move(keyframes);
+    map_version_ = map.version();
+    CopyPoints(map);
+  } else if (map_weights_version_ != map.weights_version()) {
+    for (PointSnapshot& point : points_)
+      point.static_weight = map.FindPoint(point.id)->static_weight;
+  }
+  map_weights_version_ = map.weights_version();
 }
 
 std::vector<KeyFrameId> LocalMap::SelectKeyFrames(const Map& map, const Frame& frame,
@@ -36,6 +41,7 @@ std::vector<KeyFrameId> LocalMap::SelectKeyFrames(const Map& map, const Frame& f
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
   best_keyframe_ = ranked.empty() ? KeyFrameId() : ranked.front().first;
+  if (ranked.size() > static_cast<size_t>(max_keyframes)) ranked.resize(max_keyframes);
 
   std::set<KeyFrameId> selected;
   for (const auto& [id, count] : ranked) selected.insert(id);

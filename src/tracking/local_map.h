@@ -11,9 +11,10 @@ namespace msf {
 
 class LocalMap {
  public:
-  // Keyframes that share points with the frame (at most `max_keyframes`), their best
-  // `max_neighbours`, their parents and children, and a copy of all their points. The copy is
-  // reused as long as neither the keyframes nor the map change.
+  // The keyframes that share most points with the frame and, of each of them, one more among its
+  // `max_neighbours` best, one child and the parent, `max_keyframes` in all (two more at most); and
+  // a copy of all their points. The copy is reused as long as neither the keyframes nor the map
+  // change.
   void Update(const Map& map, const Frame& frame, int max_keyframes, int max_neighbours);
 
   // Ascending by id.
@@ -35,6 +36,7 @@ class LocalMap {
   KeyFrameId best_keyframe_;
   Rigid3d T_cw_best_keyframe_;
   uint64_t map_version_ = 0;
+  uint64_t map_weights_version_ = 0;
 };
 
 }  // namespace msf

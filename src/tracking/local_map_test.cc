@@ -47,6 +47,22 @@ TEST_F(LocalMapTest, NeighboursAreAddedUpToTheLimit) {
   EXPECT_GT(local_.keyframes().size(), 1u);
 }
 
+TEST_F(LocalMapTest, OfManyKeyFramesThoseThatShareMostPointsAreTaken) {
+  Update(at_.LastFrame());
+  ASSERT_GT(local_.keyframes().size(), 2u);
+  Update(at_.LastFrame(), 2);
+  EXPECT_EQ(local_.keyframes().size(), 2u);
+  EXPECT_EQ(local_.best_keyframe(), at_.keyframes.back());
+}
+
+TEST_F(LocalMapTest, KnowsWhenAPointIsDoubted) {
+  const Frame frame = at_.LastFrame();
+  Update(frame);
+  at_.map.ObserveStaticProbability(local_.points().front().id, 0);
+  Update(frame);
+  EXPECT_LT(local_.points().front().static_weight, 1);
+}
+
 TEST_F(LocalMapTest, FollowsTheMap) {
   const Frame frame = at_.LastFrame();
   Update(frame);

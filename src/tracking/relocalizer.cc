@@ -102,6 +102,17 @@ std::optional<Relocalization> TryCandidate(const TrackingContext& context,
 
 }  // namespace
 
+Status RelocalizationOptions::Check() const {
+  const bool ok = match_ratio > 0 && match_ratio <= 1 && min_matches > 0 && ransac_iterations > 0 &&
+                  ransac_confidence > 0 && ransac_confidence < 1 && ransac_min_inliers >= 4 &&
+                  min_inliers > 0 && wide_radius_px > 0 && wide_max_distance >= 0 &&
+                  narrow_radius_px > 0 && narrow_max_distance >= 0 && narrow_from_inliers >= 0;
+  return ok ? Status::Ok()
+            : Status::Error(
+                  "relocalization: match_ratio must be in (0, 1], ransac_confidence in (0, 1), "
+                  "ransac_min_inliers at least 4, the other numbers positive");
+}
+
 std::optional<Relocalization> Relocalize(const TrackingContext& context,
                                          const RelocalizationOptions& options, const Map& map,
                                          const std::vector<KeyFrameId>& candidates,

@@ -36,6 +36,7 @@ struct RelocalizationOptions {
     visit("narrow_from_inliers", narrow_from_inliers,
           "the second search is tried above this many inliers");
   }
+  Status Check() const;
 };
 
 struct Relocalization {

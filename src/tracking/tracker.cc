@@ -66,6 +66,7 @@ TrackingResult Tracker::Track(RgbdFramePtr image, std::shared_ptr<const FrameFea
   bool tracked;
   if (has_map) {
     tracked = Locate(result);
+    result.epoch = epoch_;
     if (tracked) InsertKeyFrameIfWanted(load, result);
   } else {
     tracked = StartMap(result);
@@ -89,6 +90,7 @@ bool Tracker::StartMap(TrackingResult& result) {
   SharedMap::Writer map = map_.Write();
   map->StartNewMap();
   BecomeKeyFrame(*map, result);
+  result.epoch = map->epoch();
   result.started_map = true;
   local_map_.Clear();
   result.num_inliers = frame_.NumPoints();
@@ -146,6 +148,7 @@ void Tracker::BeginAnew() {
   frame_.features = extracted_;
   frame_.removed = extracted_removed_;
   frame_.shutter_left_in = IsRolling();
+  frame_.relocalized = false;
   TakeMatches({});
   matches_.clear();
 }
@@ -172,8 +175,7 @@ std::optional<Vector6d> Tracker::PredictVelocity() const {
 
 std::optional<Vector6d> Tracker::MeasureVelocity() const {
   // A pose found anew may be in another map, or far from where the last one was taken to be.
-  const bool is_relocalized = relocalized_time_s_ == frame_.image->time_s;
-  if (!last_frame_tracked_ || is_relocalized) return std::nullopt;
+  if (!last_frame_tracked_ || frame_.relocalized) return std::nullopt;
   const double interval_s = frame_.image->time_s - last_.image->time_s;
   const Vector6d mean = VelocityOf(frame_.T_cw * last_.T_cw.Inverse(), interval_s);
   const std::optional<Vector6d> mean_before = PredictVelocity();
@@ -201,7 +203,7 @@ void Tracker::RefreshLastFrame() {
 }
 
 bool Tracker::FollowMotion() {
-  frame_.T_cw = velocity_ ? *velocity_ * last_.T_cw : last_.T_cw;
+  frame_.T_cw = PredictMotion(frame_.image->time_s - last_.image->time_s) * last_.T_cw;
   matches_ = MatchLastFrame(context_, *map_.Read(), last_, *frame_.features, frame_.T_cw);
   if (static_cast<int>(matches_.size()) < options_.tracking.min_motion_matches) return false;
   return OptimizeFramePose(context_, *frame_.features, options_.tracking.min_pose_inliers, matches_,
@@ -241,7 +243,7 @@ bool Tracker::RelocalizeFrame() {
   frame_.T_cw = found->T_cw;
   frame_.reference = found->keyframe;
   matches_ = std::move(found->matches);
-  relocalized_time_s_ = frame_.image->time_s;
+  frame_.relocalized = true;
   return true;
 }
 
@@ -250,7 +252,8 @@ bool Tracker::RefineWithLocalMap(TrackingResult& result) {
   const TrackingOptions& options = options_.tracking;
   for (const PointMatch& match : matches_) frame_.points[match.feature] = match.point;
   local_map_.Update(*map_.Read(), frame_, options.max_local_keyframes, options.max_neighbours);
-  const bool fresh = frame_.image->time_s - relocalized_time_s_ < kFreshlyRelocalized_s;
+  const bool fresh =
+      frame_.relocalized || frame_.image->time_s - relocalized_time_s_ < kFreshlyRelocalized_s;
   const int min_inliers = fresh ? options.min_local_inliers_relocalized : options.min_local_inliers;
   double radius_factor =
       fresh ? options.local_radius_factor_relocalized : options.local_radius_factor;
@@ -306,6 +309,7 @@ bool Tracker::ReadmitKnown(int min_inliers, TrackingResult& result) {
   }
   features->BuildGrid(*camera_);
   frame_.features = std::move(features);
+  frame_.words.reset();  // of fewer features
   return tracked;
 }
 
@@ -340,6 +344,7 @@ void Tracker::InsertKeyFrameIfWanted(const MappingLoad& load, TrackingResult& re
   // The map may have been corrected since it was matched: the frame joins it where its reference
   // keyframe is now.
   frame_.T_cw = frame_.T_c_reference * map->PoseOf(frame_.reference);
+  result.epoch = map->epoch();
   // Relocalisation may have found the camera in an older map.
   map->SetActiveMap(map->MapOf(frame_.reference));
   BecomeKeyFrame(*map, result);
@@ -356,6 +361,7 @@ void Tracker::UpdateState(bool tracked, TrackingResult& result) {
   if (tracked) {
     state_ = TrackingState::kTracking;
     last_tracked_time_s_ = result.time_s;
+    if (frame_.relocalized) relocalized_time_s_ = result.time_s;
   } else if (state_ == TrackingState::kTracking) {
     state_ = TrackingState::kRecentlyLost;
   } else if (state_ == TrackingState::kRecentlyLost &&
@@ -374,7 +380,8 @@ void Tracker::RememberFrame(bool tracked, TrackingResult& result) {
   velocity_.reset();
   // Two poses from before and after a correction of the map say nothing about the camera's motion.
   const bool same_epoch = map_.Read()->epoch() == epoch_;
-  const bool follows = tracked && last_frame_tracked_ && !result.started_map && same_epoch;
+  const bool follows =
+      tracked && last_frame_tracked_ && !result.started_map && !frame_.relocalized && same_epoch;
   last_frame_tracked_ = tracked;
   if (!tracked) return;
   if (follows) {

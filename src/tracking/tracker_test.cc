@@ -225,6 +225,24 @@ TEST(TrackingOptions, RefuseWhatIsNoProbability) {
   }
 }
 
+TEST(TrackingOptions, RefuseWhatMakesNoSense) {
+  const auto message = [](auto value, auto mistake) {
+    TrackingOptions options;
+    options.*value = mistake;
+    return options.Check().message();
+  };
+  EXPECT_NE(message(&TrackingOptions::max_neighbours, -1).find("max_neighbours"),
+            std::string::npos);
+  EXPECT_NE(message(&TrackingOptions::min_initial_depths, -1).find("min_initial_depths"),
+            std::string::npos);
+  for (const int rounds : {0, 11, 1000000000}) {
+    EXPECT_NE(message(&TrackingOptions::local_search_rounds, rounds).find("from 1 to 10"),
+              std::string::npos);
+  }
+  EXPECT_NE(message(&TrackingOptions::local_radius_factor_refined, 0), "");
+  EXPECT_NE(message(&TrackingOptions::recently_lost_s, std::nan("")), "");
+}
+
 TEST(Tracker, NothingComesBackWhenItIsNotAllowed) {
   TrackingOptions options;
   options.readmit_probability = 1;

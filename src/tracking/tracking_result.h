@@ -29,6 +29,7 @@ struct TrackingResult {
   std::optional<Rigid3d>
       T_cw;  // world to camera, in the coordinates of map_id at this moment; empty without a pose
   MapId map_id;
+  uint64_t epoch = 0;  // Map::epoch() of these coordinates
   int num_features = 0;
   int num_inliers = 0;              // map points that agree with the pose
   std::vector<int> readmitted;      // of the removed features, those that are used after all
