@@ -32,7 +32,8 @@ Status DetectorOptions::Check() const {
   if (!(overlap_decay >= 0))
     return Status::Error("the detector's overlap_decay must not be negative");
   if (max_detections < 1) return Status::Error("the detector's max_detections must be at least 1");
-  if (threads < 1) return Status::Error("the detector needs at least one thread");
+  if (threads < 1 || threads > 256)
+    return Status::Error(fmt::format("the detector's threads must be 1 to 256, not {}", threads));
   return Status::Ok();
 }
 

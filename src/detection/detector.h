@@ -37,7 +37,10 @@ struct DetectorOptions {
           "input width of the network, pixels, a multiple of 32; 0: the model's own, or 416");
     visit("height", height,
           "input height of the network, pixels, a multiple of 32; 0: the model's own, or 320");
-    visit("confidence", confidence, "least score of a detection, 0 to 1");
+    visit(
+        "confidence", confidence,
+        "least score of a detection, 0 to 1; in sequences dynamic.tracks and dynamic.class_scores "
+        "decide what is done with weaker ones");
     visit("max_iou", max_iou,
           "overlap above which the weaker of two detections of one class is dropped");
     visit("overlap_decay", overlap_decay,
@@ -99,9 +102,8 @@ class Detector {
 // Loads the model and prepares it. An error names the file and what to do.
 StatusOr<std::unique_ptr<Detector>> MakeDetector(const DetectorOptions& options);
 
-// The path of a model: itself when it is a file; else looked for by name in $MSF_SLAM_DATA/models,
-// in share/msf_slam/models of the installation that the running program belongs to, and in the
-// source tree it was built from. The error lists these places.
+// The path of a model: itself when it is a file; else looked for by name in models/ of the
+// DataFolders (util/data_path.h). The error lists these places.
 StatusOr<std::filesystem::path> FindModel(const std::string& name);
 
 }  // namespace msf

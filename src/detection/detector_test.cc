@@ -64,6 +64,16 @@ TEST(ClassNames, InAllForms) {
             (std::vector<int>{1, 0, -1}));
 }
 
+TEST(DetectorOptions, ThreadsAreCounted) {
+  DetectorOptions options;
+  for (const int threads : {-1, 0, 257, 1000000}) {
+    options.threads = threads;
+    EXPECT_NE(options.Check().message().find("1 to 256"), std::string::npos) << threads;
+  }
+  options.threads = 256;
+  EXPECT_TRUE(options.Check().ok());
+}
+
 // Raw heads for a 32 x 32 image: 4 x 4, 2 x 2 and 1 cells. All sides point at bin `bin`, scores are
 // low.
 struct Heads {

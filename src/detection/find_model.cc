@@ -1,6 +1,5 @@
-#include <cstdlib>
-
 #include "detection/detector.h"
+#include "util/data_path.h"
 
 namespace msf {
 namespace fs = std::filesystem;
@@ -8,14 +7,9 @@ namespace fs = std::filesystem;
 StatusOr<fs::path> FindModel(const std::string& name) {
   std::error_code ignored;
   if (fs::is_regular_file(name, ignored)) return fs::path(name);
-  std::vector<fs::path> places;
-  if (const char* data = std::getenv("MSF_SLAM_DATA")) places.push_back(fs::path(data) / "models");
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  if (!program.empty())
-    places.push_back(program.parent_path().parent_path() / "share/msf_slam/models");
-  places.push_back(fs::path(MSF_SOURCE_DIR) / "models");
   std::string searched;
-  for (const fs::path& place : places) {
+  for (const fs::path& folder : DataFolders()) {
+    const fs::path place = folder / "models";
     if (fs::is_regular_file(place / name, ignored)) return place / name;
     searched += (searched.empty() ? "" : ", ") + place.string();
   }

@@ -50,6 +50,11 @@ StatusOr<ClassRoles> ClassRoles::Create(const DynamicOptions& options,
                                         const std::vector<std::string>& class_names) {
   const StatusOr<std::map<std::string, double>> scores = ReadScores(options.class_scores);
   if (!scores.ok()) return scores.status();
+  for (const auto& [name, score] : *scores) {
+    if (!class_names.empty() && !Lists(class_names, name)) {
+      return Status::Error("dynamic.class_scores: the detector has no class '" + name + "'");
+    }
+  }
   ClassRoles roles;
   roles.names_ = class_names;
   for (const std::string& name : class_names) {

@@ -67,6 +67,14 @@ TEST(ClassRoles, AScoreThatCannotBeReadIsAnError) {
   }
 }
 
+TEST(ClassRoles, AScoreOfAClassThatTheDetectorDoesNotKnowIsAnError) {
+  DynamicOptions options;
+  options.class_scores = {"peron=0.5"};
+  const StatusOr<ClassRoles> roles = ClassRoles::Create(options, {"person"});
+  ASSERT_FALSE(roles.ok());
+  EXPECT_THAT(roles.message(), testing::HasSubstr("'peron'"));
+}
+
 TEST(ClassRoles, NoDetectorIsFine) {
   EXPECT_TRUE(ClassRoles::Create({}, {}).ok());
   EXPECT_EQ(ClassRoles().KindOf(0), std::nullopt);

@@ -18,6 +18,9 @@ constexpr float kMovesTwice = 0.1f;
 constexpr float kMovesOnce = 0.25f;
 constexpr float kReadmittedWeight = 0.3f;
 
+constexpr double kUsualInterval_s = 1.0 / 30;
+constexpr size_t kFewestViews = 2;  // kept, at however low a frame rate
+
 // Detections come from outside: boxes are cut to the image, what makes no sense is left out.
 std::vector<Detection> Sane(const std::vector<Detection>& detections, const Camera& camera) {
   std::vector<Detection> sane;
@@ -36,6 +39,18 @@ std::vector<Detection> Sane(const std::vector<Detection>& detections, const Came
   return sane;
 }
 
+// Options in pixels are those of images 640 px wide.
+DynamicOptions ForImageWidth(const DynamicOptions& options, int width) {
+  const double scale = width / 640.0;
+  DynamicOptions scaled = options;
+  scaled.suspect_reach_px *= scale;
+  scaled.tracks.cluster_px *= scale;
+  scaled.background.max_turn_px *= scale;
+  scaled.background.min_intruder_blocks =
+      static_cast<int>(std::lround(scale * scale * options.background.min_intruder_blocks));
+  return scaled;
+}
+
 }  // namespace
 
 StatusOr<std::unique_ptr<DynamicFilter>> DynamicFilter::Create(
@@ -50,13 +65,13 @@ StatusOr<std::unique_ptr<DynamicFilter>> DynamicFilter::Create(
 
 DynamicFilter::DynamicFilter(const DynamicOptions& options, const Camera& camera,
                              const ScaleLevels& levels, ClassRoles roles, uint64_t seed)
-    : options_(options),
+    : options_(ForImageWidth(options, camera.width)),
       camera_(camera),
       levels_(levels),
       seed_(seed),
       flow_options_(options.flow),
-      tracks_(options.tracks, std::move(roles)),
-      background_(options.background, camera) {
+      tracks_(options_.tracks, std::move(roles)),
+      background_(options_.background, camera) {
   if (options.mode == "paper") {
     flow_options_.shrink = 1;
     flow_options_.window_px = options.paper_window_px;
@@ -143,18 +158,22 @@ void DynamicFilter::ClassifyByMotion(Work& work, const Detections* detections,
     FindIntruders(work);
   }
   TestSlowMotions(work);
-  GatherEvidence(work);
-  tracks_.UpdateStates(work.frame.time_s);
+  if (result.camera_motion_reliable) {
+    GatherEvidence(work);
+    tracks_.UpdateStates(work.frame.time_s);
+  }
   tracks_.DropLost(work.frame.time_s, options_.bridging);
   LabelPoints(work, result);
   ReadmitPoints(work, result);
+  if (options_.weights) return;
+  for (float& probability : result.labels.static_probability)
+    probability = probability < static_cast<float>(options_.min_static_probability) ? 0.0f : 1.0f;
 }
 
 // --- Detections
 
 void DynamicFilter::TakeDetections(const Detections& detections, Work& work) {
   if (last_detections_.valid() && detections.frame <= last_detections_) return;
-  last_detections_ = detections.frame;
   double age_s = 0;
   if (detections.frame == work.frame.id) {
     work.detections = Sane(detections.objects, camera_);
@@ -166,6 +185,7 @@ void DynamicFilter::TakeDetections(const Detections& detections, Work& work) {
     work.detections = CarryToNow(detections, *then, work);
     age_s = work.frame.time_s - then->time_s;
   }
+  last_detections_ = detections.frame;
   tracks_.TakeDetections(work.detections, work.frame.time_s, age_s);
 }
 
@@ -203,12 +223,14 @@ void DynamicFilter::FollowCamera(const Rigid3d& T_last_now_predicted, Work& work
   // What took coordinates of the last camera into the past now takes those of this one.
   const Rigid3d T_last_now = options_.compensate_camera_motion ? motion.T_past_now : Rigid3d();
   const Vector6d twist = T_last_now.Log();
+  const double interval_s = work.frame.time_s - past_.back().time_s;
   for (PastView& view : past_) {
     view.T_past_now = view.T_past_now * T_last_now;
-    view.unsteadiness = twist - last_motion_;
+    view.unsteadiness = twist - last_velocity_ * interval_s;
   }
-  last_motion_ = twist;
-  steady_ = twist.tail<3>().norm() * camera_.fx < options_.background.max_turn_px;
+  last_velocity_ = twist / interval_s;
+  const double turn_px = last_velocity_.tail<3>().norm() * kUsualInterval_s * camera_.fx;
+  steady_ = turn_px < options_.background.max_turn_px;
 }
 
 CameraMotion DynamicFilter::MotionByLandmarks(const Rigid3d& T_last_now_predicted,
@@ -233,17 +255,23 @@ CameraMotion DynamicFilter::MotionByFeatures(const Rigid3d& T_last_now_predicted
   std::vector<int> still;
   std::vector<FlowPoint> flow;
   for (const int i : work.all) {
-    const bool on_object = std::any_of(
-        tracks_.tracks().begin(), tracks_.tracks().end(), [&](const ObjectTrack& track) {
-          return track.kind == ObjectKind::kKnown && track.Removes() &&
-                 track.mask.Covers(work.flow[i].image_px);
-        });
+    const bool on_object = WasOn(work.flow[i].image_px, [](const ObjectTrack& track) {
+      return track.kind == ObjectKind::kKnown && track.Removes();
+    });
     if (on_object) continue;
     still.push_back(i);
     flow.push_back(work.flow[i]);
   }
   return EstimateCameraMotion(camera_, levels_, work.features, still, flow, T_last_now_predicted,
                               SeedFor(work));
+}
+
+// Whether the last image showed such a track there.
+template <typename Predicate>
+bool DynamicFilter::WasOn(const Eigen::Vector2f& last_px, Predicate such) const {
+  return std::any_of(
+      tracks_.tracks().begin(), tracks_.tracks().end(),
+      [&](const ObjectTrack& track) { return such(track) && track.mask.Covers(last_px); });
 }
 
 const PastView* DynamicFilter::ViewBefore(double time_s) const {
@@ -258,8 +286,12 @@ void DynamicFilter::TestMotions(Work& work) const {
   work.motion.assign(work.all.size(), PointMotion::kUntested);
   work.slow_motion = work.motion;
   if (past_.empty()) return;
-  work.motion = TestMotion(camera_, levels_, work.features, work.all, work.flow, past_.back(),
-                           options_.motion);
+  MotionTestPoints points{work.all, work.flow, {}};
+  for (const FlowPoint& place : work.flow) {
+    points.on_object.push_back(
+        WasOn(place.image_px, [](const ObjectTrack& track) { return track.Removes(); }));
+  }
+  work.motion = TestMotion(camera_, levels_, work.features, points, past_.back(), options_.motion);
 }
 
 // Objects may move too slowly for two successive images: their points are compared with an older
@@ -267,22 +299,31 @@ void DynamicFilter::TestMotions(Work& work) const {
 void DynamicFilter::TestSlowMotions(Work& work) const {
   const PastView* before = ViewBefore(work.frame.time_s - options_.motion.look_back_s);
   if (!before || before == &past_.back()) return;
-  std::vector<int> on_objects;
-  std::vector<Eigen::Vector2f> points;
+  MotionTestPoints points;
+  std::vector<int> others;
   for (const int i : work.all) {
-    const Eigen::Vector2f& px = work.features.image_px[i];
-    const auto covers = [&](const ObjectTrack& track) { return track.mask.Covers(px); };
-    if (std::none_of(tracks_.tracks().begin(), tracks_.tracks().end(), covers)) continue;
-    on_objects.push_back(i);
-    points.push_back(px);
+    const auto covers = [&](const ObjectTrack& track) {
+      return track.mask.Covers(work.features.image_px[i]);
+    };
+    const bool on_object = std::any_of(tracks_.tracks().begin(), tracks_.tracks().end(), covers);
+    (on_object ? points.which : others).push_back(i);
   }
+  const size_t num_on_objects = points.which.size();
+  if (num_on_objects == 0) return;
+  // A few of the others tell how noisy the comparison is.
+  constexpr size_t kReferences = 60;
+  const size_t step = others.size() / kReferences + 1;
+  for (size_t k = 0; k < others.size(); k += step) points.which.push_back(others[k]);
+  points.on_object.assign(num_on_objects, 1);
+  points.on_object.resize(points.which.size(), 0);
+  std::vector<Eigen::Vector2f> places;
+  for (const int i : points.which) places.push_back(work.features.image_px[i]);
   const std::vector<Eigen::Vector2f> guesses =
-      PredictInPast(camera_, work.features, on_objects, before->T_past_now);
-  const std::vector<FlowPoint> flow =
-      FollowPoints(work.view.image, before->image, points, guesses, flow_options_);
+      PredictInPast(camera_, work.features, points.which, before->T_past_now);
+  points.flow = FollowPoints(work.view.image, before->image, places, guesses, flow_options_);
   const std::vector<PointMotion> verdicts =
-      TestMotion(camera_, levels_, work.features, on_objects, flow, *before, options_.motion);
-  for (size_t k = 0; k < on_objects.size(); ++k) work.slow_motion[on_objects[k]] = verdicts[k];
+      TestMotion(camera_, levels_, work.features, points, *before, options_.motion);
+  for (size_t k = 0; k < num_on_objects; ++k) work.slow_motion[points.which[k]] = verdicts[k];
 }
 
 // --- Labels
@@ -371,9 +412,6 @@ void DynamicFilter::LabelPoints(const Work& work, DynamicResult& result) const {
                         static_cast<float>(options_.tracks.settled_weight));
     }
   }
-  if (options_.weights) return;
-  for (float& probability : result.labels.static_probability)
-    probability = probability < static_cast<float>(options_.min_static_probability) ? 0.0f : 1.0f;
 }
 
 // Of suspicious points that are used all the same.
@@ -406,7 +444,7 @@ void DynamicFilter::Describe(const Work& work, DynamicResult& result) const {
                               .name = tracks_.roles().NameOf(track.class_id),
                               .kind = track.kind,
                               .state = track.state,
-                              .removed = track.Removes(),
+                              .removed = track.Removes() && IsCredible(track),
                               .bridged = track.confirmed_s < work.frame.time_s,
                               .score = track.score,
                               .box = track.mask.empty() ? track.box : track.mask.box,
@@ -432,8 +470,9 @@ cv::Mat1b DynamicFilter::OwnersOfCells(const Work& work, const DynamicResult& re
     give(doubtful, CellOwner::kDoubtful);
   }
   for (const ObjectTrack& track : tracks_.tracks()) {
-    const bool is_sure = track.kind == ObjectKind::kKnown && track.Removes() &&
-                         track.score >= static_cast<float>(options_.tracks.start_score);
+    const bool is_sure =
+        track.kind == ObjectKind::kKnown && track.Removes() &&
+        track.score >= static_cast<float>(tracks_.roles().StartScoreOf(track.class_id));
     if (is_sure && !track.mask.empty() && IsCredible(track))
       give(track.mask.cells, CellOwner::kSomebody);
   }
@@ -443,15 +482,17 @@ cv::Mat1b DynamicFilter::OwnersOfCells(const Work& work, const DynamicResult& re
 void DynamicFilter::Remember(Work& work, const DynamicResult& result) {
   mask_share_ = result.mask_share;
   last_owners_ = OwnersOfCells(work, result);
-  tracks_.RememberBoxes(work.frame.id, static_cast<size_t>(options_.history_frames));
   past_.push_back(std::move(work.view));
-  if (past_.size() > static_cast<size_t>(options_.history_frames)) past_.pop_front();
+  while (past_.size() > kFewestViews && past_[1].time_s <= work.frame.time_s - options_.history_s)
+    past_.pop_front();
+  tracks_.RememberBoxes(work.frame.id, past_.size());
 }
 
 void DynamicFilter::TakePose(const std::optional<Rigid3d>& T_cw, bool same_world,
                              std::vector<Landmark> landmarks) {
   landmarks_ = std::move(landmarks);
   T_cw_last_ = T_cw;
+  if (options_.mode != "full") return;
   if (!same_world) {
     // The camera is where it was, only the numbers have changed.
     if (T_cw && T_cw_expected_) {

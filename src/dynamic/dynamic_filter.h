@@ -12,7 +12,6 @@
 #include "dynamic/camera_motion.h"
 #include "dynamic/object_track.h"
 #include "dynamic/point_labels.h"
-#include "util/stage_timer.h"
 
 namespace msf {
 
@@ -124,6 +123,8 @@ class DynamicFilter {
   cv::Mat1b OwnersOfCells(const Work& work, const DynamicResult& result) const;
   void Remember(Work& work, const DynamicResult& result);
   const PastView* ViewBefore(double time_s) const;
+  template <typename Predicate>
+  bool WasOn(const Eigen::Vector2f& last_px, Predicate such) const;
 
   const DynamicOptions options_;
   const Camera camera_;
@@ -133,14 +134,14 @@ class DynamicFilter {
   ObjectTracks tracks_;
   std::deque<PastView> past_;  // newest last
   Background background_;
-  Vector6d last_motion_ = Vector6d::Zero();  // twist from the last frame to the present one
-  bool steady_ = false;                      // the camera turns slowly
-  cv::Mat1b last_owners_;                    // CellOwner per cell of the last frame
-  std::vector<Landmark> landmarks_;          // of the last frame
-  std::optional<Rigid3d> T_cw_last_;         // of the last frame, by tracking
-  std::optional<Rigid3d> T_cw_expected_;     // of the present one, by its motion since
-  FrameId last_detections_;                  // the frame of the newest detections taken
-  double mask_share_ = 0;                    // of the last frame
+  Vector6d last_velocity_ = Vector6d::Zero();  // twist per second up to the present frame
+  bool steady_ = false;                        // the camera turns slowly
+  cv::Mat1b last_owners_;                      // CellOwner per cell of the last frame
+  std::vector<Landmark> landmarks_;            // of the last frame
+  std::optional<Rigid3d> T_cw_last_;           // of the last frame, by tracking
+  std::optional<Rigid3d> T_cw_expected_;       // of the present one, by its motion since
+  FrameId last_detections_;                    // the frame of the newest detections taken
+  double mask_share_ = 0;                      // of the last frame
 };
 
 // Features with their static probability as weight, in two parts.

@@ -300,7 +300,7 @@ TEST(DynamicFilterFull, AMoverOfUnknownClassIsFound) {
 RgbdFrame TurnedFrame(int number, float turn_px, const cv::Rect& thing_px,
                       const cv::Rect& part_px) {
   const Camera& camera = *TestCamera();
-  RgbdFrame frame = TexturedFrame(number, 0.1 * number, 0);
+  RgbdFrame frame = TexturedFrame(number, number / 30.0, 0);
   const auto f = static_cast<float>(camera.fx), cx = static_cast<float>(camera.cx),
              cy = static_cast<float>(camera.cy), a = turn_px / f;
   const cv::Matx33f K(f, 0, cx, 0, f, cy, 0, 0, 1);

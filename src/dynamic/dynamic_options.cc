@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <type_traits>
 
 namespace msf {
@@ -48,6 +49,16 @@ Status DynamicOptions::Check() const {
         planes.covered_share, mask.min_depth_share, mask.near_depth_share}) {
     if (share > 1) return Status::Error("dynamic: shares and probabilities are at most 1");
   }
+  for (const auto& [name, value, most] :
+       {std::tuple("mask.grow_px", mask.grow_px, 1000),
+        {"mask.grow_without_depth_px", mask.grow_without_depth_px, 1000},
+        {"background.num_views", background.num_views, 100},
+        {"planes.hypotheses", planes.hypotheses, 10000},
+        {"paper_window_px", paper_window_px, 101}}) {
+    if (value > most)
+      return Status::Error(std::string("dynamic.") + name + " must be at most " +
+                           std::to_string(most));
+  }
   if (!(paper_flow_px > 0) || paper_window_px < 3)
     return Status::Error("dynamic: paper_flow_px must be positive and paper_window_px at least 3");
   if (!(motion.min_residual_px > 0) || !(motion.look_back_s >= 0))
@@ -57,7 +68,8 @@ Status DynamicOptions::Check() const {
     return Status::Error(
         "dynamic.mask: depth_band_m, max_image_share and max_mover_share must be positive");
   }
-  if (history_frames < 2) return Status::Error("dynamic.history_frames must be at least 2");
+  if (history_s < motion.look_back_s)
+    return Status::Error("dynamic.history_s must be at least motion.look_back_s");
   if (!(max_feature_factor >= 1))
     return Status::Error("dynamic.max_feature_factor must be at least 1");
   return flow.Check();

@@ -9,7 +9,7 @@
 
 namespace msf {
 
-// What the two flow-based modes ask of a point.
+// What mode full asks of a point.
 struct MotionTestOptions {
   double min_residual_px = 1.5;
   double sigmas = 3;
@@ -67,11 +67,13 @@ struct BackgroundOptions {
           "be his where nothing is detected now; 0: never");
     visit("tolerance_m", tolerance_m, "depths differ by more than this, m, at depth 0 ...");
     visit("tolerance_per_m2", tolerance_per_m2, "... and its growth with the square of depth, 1/m");
-    visit("max_turn_px", max_turn_px,
-          "views taken while the camera turns faster, px per image, do not tell what is new: their "
-          "depth is displaced");
+    visit(
+        "max_turn_px", max_turn_px,
+        "views taken while the camera turns faster, px of an image 640 px wide per 1/30 s, do not "
+        "tell what is new: their depth is displaced");
     visit("min_intruder_blocks", min_intruder_blocks,
-          "blocks (8 x 8 px) of something new that make an object of unknown class");
+          "blocks (8 x 8 px of an image 640 px wide) of something new that make an object of "
+          "unknown class");
   }
 };
 
@@ -166,7 +168,8 @@ struct ObjectTrackOptions {
           "or after it was seen to move, s");
     visit("sure_score", sure_score, "score of a detection that leaves no doubt");
     visit("bridge_still_s", bridge_still_s,
-          "the same for one that was detected often and still looks the same in depth, s");
+          "one that was detected often and still looks the same in depth is followed for so long, "
+          "s");
     visit("start_score", start_score, "score with which a known dynamic class starts a track");
     visit("potential_score", potential_score, "the same for a potentially dynamic class");
     visit("continue_score", continue_score, "score with which a detection continues a track");
@@ -181,13 +184,14 @@ struct ObjectTrackOptions {
     visit("settled_weight", settled_weight,
           "static probability of the points of a known dynamic object that rests");
     visit("mover_share", mover_share,
-          "the same for objects of potentially dynamic or unknown class");
+          "moving_share of objects of potentially dynamic or unknown class");
     visit("new_share", new_share,
           "an object that stands where the camera has seen through before, with this share of it, "
           "has moved");
     visit("min_cluster_points", min_cluster_points,
           "moving points that make an object of unknown class");
-    visit("cluster_px", cluster_px, "distance between neighbouring points of such an object, px");
+    visit("cluster_px", cluster_px,
+          "distance between neighbouring points of such an object, px of an image 640 px wide");
   }
 };
 
@@ -211,7 +215,7 @@ struct DynamicOptions {
   double min_static_probability = 0.3;
   double suspect_reach_px = 48;
   double max_feature_factor = 1.6;
-  int history_frames = 16;
+  double history_s = 0.55;
   MotionTestOptions motion;
   BackgroundOptions background;
   PlaneOptions planes;
@@ -244,10 +248,10 @@ struct DynamicOptions {
     visit(
         "suspect_reach_px", suspect_reach_px,
         "with a detector a point whose flow disagrees is removed only so near to an object that is "
-        "removed or may be, px; elsewhere it is used with little weight");
+        "removed or may be, px of an image 640 px wide; elsewhere it is used with little weight");
     visit("max_feature_factor", max_feature_factor,
           "so many times the points are extracted at most where masks cover the image");
-    visit("history_frames", history_frames, "images kept, to place late detections");
+    visit("history_s", history_s, "images are kept for so long, to place late detections, s");
     visit("motion", motion, "");
     visit("background", background, "");
     visit("planes", planes, "");

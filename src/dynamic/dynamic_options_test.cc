@@ -34,7 +34,7 @@ TEST(DynamicOptions, WhatMakesNoSenseIsAnError) {
       [](DynamicOptions& o) { o.mask.depth_band_m = 0; },
       [](DynamicOptions& o) { o.mask.max_image_share = 0; },
       [](DynamicOptions& o) { o.mask.max_mover_share = 0; },
-      [](DynamicOptions& o) { o.history_frames = 1; },
+      [](DynamicOptions& o) { o.history_s = 0.1; },
       [](DynamicOptions& o) { o.max_feature_factor = 0.5; },
       [](DynamicOptions& o) { o.flow.shrink = 3; },
       [](DynamicOptions& o) { o.min_static_features = -1; },

@@ -25,6 +25,14 @@ bool AtSimilarDepth(const ObjectMask& a, const ObjectMask& b) {
   return a.depth_m <= 0 || b.depth_m <= 0 || std::abs(a.depth_m - b.depth_m) <= kSimilar_m;
 }
 
+// The same thing found twice: a second box of whatever class around it.
+bool IsEcho(const ImageBox& box, float score, const ObjectTrack& track) {
+  constexpr float kSameBox = 0.5f, kInside = 0.8f, kMuchWeaker = 0.7f;
+  if (track.score < score) return false;
+  if (IntersectionOverUnion(box, track.box) > kSameBox) return true;
+  return score < kMuchWeaker * track.score && Containment(box, track.box) > kInside;
+}
+
 }  // namespace
 
 const char* ToString(MotionState state) {
@@ -88,20 +96,6 @@ ObjectTrack* ObjectTracks::FindMatch(const Detection& detection, ObjectKind kind
   return best;
 }
 
-// The same thing found twice: a second box of whatever class around it.
-bool ObjectTracks::IsEcho(const Detection& detection, const std::vector<uint8_t>& taken) const {
-  constexpr float kSameBox = 0.5f, kInside = 0.8f, kMuchWeaker = 0.7f;
-  for (size_t t = 0; t < taken.size(); ++t) {
-    const ObjectTrack& track = tracks_[t];
-    if (!taken[t] || track.score < detection.score) continue;
-    if (IntersectionOverUnion(detection.box, track.box) > kSameBox) return true;
-    if (detection.score < kMuchWeaker * track.score &&
-        Containment(detection.box, track.box) > kInside)
-      return true;
-  }
-  return false;
-}
-
 bool ObjectTracks::MayTake(const Detection& detection, FrameId frame) const {
   const std::optional<ObjectKind> kind = roles_.KindOf(detection.class_id);
   if (!kind || detection.score < options_.continue_score) return false;
@@ -115,22 +109,39 @@ bool ObjectTracks::MayTake(const Detection& detection, FrameId frame) const {
 void ObjectTracks::TakeDetections(const std::vector<Detection>& detections, double time_s,
                                   double age_s) {
   std::vector<uint8_t> taken(tracks_.size(), 0);
+  const auto any_taken = [&](auto such) {
+    for (size_t t = 0; t < taken.size(); ++t) {
+      if (taken[t] && such(tracks_[t])) return true;
+    }
+    return false;
+  };
   for (const Detection& detection : detections) {
     const std::optional<ObjectKind> kind = roles_.KindOf(detection.class_id);
-    if (!kind || detection.score < options_.continue_score || IsEcho(detection, taken)) continue;
+    if (!kind || detection.score < options_.continue_score) continue;
+    // Somebody who sits on a chair is no echo of it.
+    constexpr float kHalfAsSure = 0.5f;
+    const bool is_echo = any_taken([&](const ObjectTrack& track) {
+      const bool sits_on_it = *kind == ObjectKind::kKnown && track.kind == ObjectKind::kPotential &&
+                              detection.score >= kHalfAsSure * track.score;
+      return !sits_on_it && IsEcho(detection.box, detection.score, track);
+    });
+    if (is_echo) continue;
     ObjectTrack* track = FindMatch(detection, *kind, taken);
     if (!track) {
       if (detection.score < roles_.StartScoreOf(detection.class_id)) continue;
       track = &tracks_.emplace_back();
       track->id = next_id_++;
-      track->state = *kind == ObjectKind::kKnown ? MotionState::kMoving : MotionState::kUncertain;
-      track->resting_since_s = time_s;
       taken.push_back(0);
     }
     if (detection.score >= roles_.StartScoreOf(detection.class_id)) track->seen_well_s = time_s;
     // Clutter gets weak detections, too.
     if (time_s - track->seen_well_s > options_.weak_s) continue;
     taken[track - tracks_.data()] = 1;
+    const bool turns_out_alive = track->kind == ObjectKind::kUnknown && *kind == ObjectKind::kKnown;
+    if (track->confirmations == 0 || turns_out_alive) {
+      track->state = *kind == ObjectKind::kKnown ? MotionState::kMoving : MotionState::kUncertain;
+      track->resting_since_s = time_s;
+    }
     track->kind = *kind;
     track->class_id = detection.class_id;
     track->score = detection.score;
@@ -142,8 +153,11 @@ void ObjectTracks::TakeDetections(const std::vector<Detection>& detections, doub
   }
   // A track that only bridges where another one was detected has been mistaken.
   for (size_t t = 0; t < taken.size(); ++t) {
-    const Detection as_detection{tracks_[t].class_id, 0, tracks_[t].box};
-    if (!taken[t] && IsEcho(as_detection, taken)) tracks_[t].confirmed_s = -1e9;
+    const ObjectTrack& bridged = tracks_[t];
+    const bool is_echo = !taken[t] && any_taken([&](const ObjectTrack& track) {
+      return AtSimilarDepth(bridged.mask, track.mask) && IsEcho(bridged.box, 0, track);
+    });
+    if (is_echo) tracks_[t].confirmed_s = -1e9;
   }
 }
 
@@ -159,11 +173,12 @@ void ObjectTracks::TakeMover(const ObjectMask& mask, double time_s) {
     track = &tracks_.emplace_back();
     track->id = next_id_++;
   }
+  // Several clusters of one image are one confirmation.
+  if (track->confirmations == 0 || track->confirmed_s < time_s) ++track->confirmations;
   track->mask = Union(track->mask, mask);
   track->box = track->mask.box;
   track->state = MotionState::kMoving;
   track->confirmed_s = track->resting_since_s = time_s;
-  ++track->confirmations;
 }
 
 void ObjectTracks::MergeMovers() {

@@ -42,7 +42,7 @@ struct ObjectTrack {
   double seen_well_s = 0;       // last detection that could have started it, or motion
   double detection_age_s = 0;   // of the last detection when it came
   double resting_since_s = 0;
-  int confirmations = 0;
+  int confirmations = 0;  // images in which it was detected or seen to move
   MotionEvidence evidence;
   int detected_area = 0;       // of the mask when it was detected last, cells
   float detected_depth_m = 0;  // and its depth
@@ -84,7 +84,6 @@ class ObjectTracks {
   ObjectTrack* FindMatch(const Detection& detection, ObjectKind kind,
                          const std::vector<uint8_t>& taken);
   double BridgeOf(const ObjectTrack& track) const;
-  bool IsEcho(const Detection& detection, const std::vector<uint8_t>& taken) const;
   void UpdateState(ObjectTrack& track, double time_s) const;
 
   ObjectTrackOptions options_;

@@ -134,6 +134,14 @@ TEST_F(Detected, TheSameThingUnderTwoNamesIsOneObject) {
   EXPECT_EQ(Only().kind, ObjectKind::kKnown);
 }
 
+TEST_F(Detected, SomebodyOnAChairIsNoEchoOfIt) {
+  tracks_.TakeDetections({{kChair, 0.85f, kHere}, {kPerson, 0.8f, kHere}}, 1);
+  ASSERT_EQ(tracks_.tracks().size(), 2u);
+  EXPECT_EQ(tracks_.tracks()[1].kind, ObjectKind::kKnown);
+  tracks_.TakeDetections({{kChair, 0.85f, kThere}, {kPerson, 0.3f, kThere}}, 2);
+  EXPECT_EQ(tracks_.tracks().size(), 3u) << "so weak that it rather is a second look at the chair";
+}
+
 TEST_F(Detected, AMuchWeakerBoxInsideAnotherIsAnEcho) {
   tracks_.TakeDetections({{kPerson, 0.9f, kHere}, {kPerson, 0.4f, {110, 110, 150, 150}}}, 1);
   EXPECT_EQ(tracks_.tracks().size(), 1u);
@@ -162,6 +170,16 @@ ObjectMask MaskOf(int area, float depth_m) {
   return mask;
 }
 
+TEST_F(Detected, SomebodyWhoIsHiddenByAnotherIsBridged) {
+  tracks_.TakeDetections({{kPerson, 0.9f, kHere}, {kPerson, 0.9f, kThere}}, 1);
+  tracks_.tracks()[0].mask = MaskOf(500, 1.5f);
+  tracks_.tracks()[1].mask = MaskOf(500, 3);
+  tracks_.tracks()[1].box = kHere;  // has walked behind the first
+  tracks_.TakeDetections({{kPerson, 0.9f, kHere}}, 1.1);
+  tracks_.DropLost(1.1, true);
+  EXPECT_EQ(tracks_.tracks().size(), 2u);
+}
+
 // All of `box`, at a depth.
 ObjectMask MaskOver(const ImageBox& box, float depth_m) {
   ObjectMask mask = WholeBox(CoarseDepth(DepthFrame(depth_m)), box);
@@ -181,6 +199,12 @@ TEST_F(Detected, AMoverMustBeSeenThreeTimes) {
   EXPECT_TRUE(Only().Removes());
   Judge(10, 3, 0.4);
   EXPECT_FALSE(Only().Removes()) << "this image does not show that it moves";
+}
+
+TEST_F(Detected, SeveralClustersOfOneImageAreOneConfirmation) {
+  for (int i = 0; i < 3; ++i) tracks_.TakeMover(MaskOver(kHere, 2), 1);
+  EXPECT_EQ(Only().confirmations, 1);
+  EXPECT_FALSE(Only().Removes());
 }
 
 TEST_F(Detected, AMoverElsewhereIsAnother) {
@@ -231,6 +255,14 @@ TEST_F(Detected, AMoverMayTurnOutToBeAPerson) {
   tracks_.TakeDetections({{kPerson, 0.3f, kHere}}, 2);
   EXPECT_EQ(Only().kind, ObjectKind::kKnown);
   EXPECT_EQ(Only().id, id);
+}
+
+TEST_F(Detected, AMoverAtRestThatTurnsOutToBeAPersonIsRemovedAgain) {
+  tracks_.TakeMover(MaskOver(kHere, 2), 1);
+  EXPECT_EQ(Judge(20, 0, 1.5), MotionState::kStatic);
+  tracks_.TakeDetections({{kPerson, 0.9f, kHere}}, 1.6);
+  EXPECT_EQ(Only().state, MotionState::kMoving);
+  EXPECT_EQ(Judge(20, 0, 1.7), MotionState::kMoving) << "it begins to rest now";
 }
 
 TEST_F(Motion, APersonComesToRestAndMovesAgain) {

@@ -90,14 +90,16 @@ Deviation DeviationWithDepth(const Camera& camera, const Eigen::Vector2d& uv_px,
 }
 
 // Some images agree worse with the motion of a rigid camera than others (fast turns under a rolling
-// shutter, depth taken at another time than colour): most points still stand still, and what most
-// of them deviate by is noise.
-double NoiseFactor(const std::vector<Deviation>& deviations, double typical_share) {
+// shutter, depth taken at another time than colour): most points beside the known objects still
+// stand still, and what most of them deviate by is noise.
+double NoiseFactor(const std::vector<Deviation>& deviations, const std::vector<uint8_t>& on_object,
+                   double typical_share) {
+  constexpr size_t kEnough = 10;
   std::vector<double> sideways;
-  for (const Deviation& deviation : deviations) {
-    if (deviation.tested) sideways.push_back(deviation.sideways);
+  for (size_t k = 0; k < deviations.size(); ++k) {
+    if (deviations[k].tested && !on_object[k]) sideways.push_back(deviations[k].sideways);
   }
-  if (sideways.empty()) return 1;
+  if (sideways.size() < kEnough) return 1;
   const auto middle = sideways.begin() + static_cast<std::ptrdiff_t>(sideways.size() / 2);
   std::nth_element(sideways.begin(), middle, sideways.end());
   return std::max(1.0, *middle / typical_share);
@@ -120,19 +122,19 @@ std::vector<Eigen::Vector2f> PredictInPast(const Camera& camera, const FrameFeat
 }
 
 std::vector<PointMotion> TestMotion(const Camera& camera, const ScaleLevels& levels,
-                                    const FrameFeatures& features, std::span<const int> which,
-                                    std::span<const FlowPoint> flow, const PastView& past,
-                                    const MotionTestOptions& options) {
-  std::vector<Deviation> deviations(which.size());
-  for (size_t k = 0; k < which.size(); ++k) {
-    if (!flow[k].found) continue;
-    const int i = which[k];
-    const Eigen::Vector2d landed_px = camera.Undistort(flow[k].image_px.cast<double>());
+                                    const FrameFeatures& features, const MotionTestPoints& points,
+                                    const PastView& past, const MotionTestOptions& options) {
+  std::vector<Deviation> deviations(points.which.size());
+  for (size_t k = 0; k < deviations.size(); ++k) {
+    const FlowPoint& flow = points.flow[k];
+    if (!flow.found) continue;
+    const int i = points.which[k];
+    const Eigen::Vector2d landed_px = camera.Undistort(flow.image_px.cast<double>());
     const Eigen::Vector2d uv_px = features.uv_px[i].cast<double>();
     const double flow_sigma_px = options.flow_sigma_px * levels.scale(features.level[i]);
     if (features.HasDepth(i)) {
       deviations[k] = DeviationWithDepth(camera, uv_px, features.depth_m[i], landed_px,
-                                         flow[k].image_px, flow_sigma_px, past, options);
+                                         flow.image_px, flow_sigma_px, past, options);
     } else {
       const double tolerance_px =
           std::max(options.min_residual_px, options.sigmas * flow_sigma_px) +
@@ -142,9 +144,9 @@ std::vector<PointMotion> TestMotion(const Camera& camera, const ScaleLevels& lev
           DeviationWithoutDepth(camera, uv_px, landed_px, past.T_past_now, tolerance_px);
     }
   }
-  const double noise = NoiseFactor(deviations, options.typical_share);
-  std::vector<PointMotion> verdicts(which.size(), PointMotion::kUntested);
-  for (size_t k = 0; k < which.size(); ++k) {
+  const double noise = NoiseFactor(deviations, points.on_object, options.typical_share);
+  std::vector<PointMotion> verdicts(deviations.size(), PointMotion::kUntested);
+  for (size_t k = 0; k < deviations.size(); ++k) {
     if (!deviations[k].tested) continue;
     verdicts[k] = deviations[k].sideways > noise ? PointMotion::kMovesSideways
                   : deviations[k].depth_differs  ? PointMotion::kMovesInDepth

@@ -40,10 +40,17 @@ inline bool Moves(PointMotion motion) {
 std::vector<Eigen::Vector2f> PredictInPast(const Camera& camera, const FrameFeatures& features,
                                            std::span<const int> which, const Rigid3d& T_past_now);
 
-// Verdicts on the features `which`, whose places in the past image are `flow` (same order).
+// Points to be tested: features, their places in the past image, and whether each lies on an object
+// (the others tell how noisy the image is; where there are few of them it counts as usual).
+struct MotionTestPoints {
+  std::vector<int> which;
+  std::vector<FlowPoint> flow;
+  std::vector<uint8_t> on_object;
+};
+
+// A verdict on each point.
 std::vector<PointMotion> TestMotion(const Camera& camera, const ScaleLevels& levels,
-                                    const FrameFeatures& features, std::span<const int> which,
-                                    std::span<const FlowPoint> flow, const PastView& past,
-                                    const MotionTestOptions& options);
+                                    const FrameFeatures& features, const MotionTestPoints& points,
+                                    const PastView& past, const MotionTestOptions& options);
 
 }  // namespace msf

@@ -31,9 +31,11 @@ class PointMotionTest : public ::testing::Test {
   std::vector<PointMotion> Test() {
     std::vector<int> all(features_.size());
     std::iota(all.begin(), all.end(), 0);
-    return TestMotion(*TestCamera(), TestLevels(), features_, all, flow_, past_, {});
+    on_object_.resize(all.size(), 0);
+    return TestMotion(*TestCamera(), TestLevels(), features_, {all, flow_, on_object_}, past_, {});
   }
   FrameFeatures features_;
+  std::vector<uint8_t> on_object_;  // of the first points; the others are on none
   std::vector<FlowPoint> flow_;
   PastView past_ = MakePast(kDepth_m);
 };
@@ -96,13 +98,24 @@ TEST_F(PointMotionTest, WhileTheMotionChangesMoreIsTolerated) {
 
 // Most are off by half of their tolerance instead of 0.3 of it: all tolerances grow by 5 / 3.
 TEST_F(PointMotionTest, WhatMostPointsDeviateByIsNoise) {
-  for (int i = 0; i < 5; ++i) Add(1.8f);
+  for (int i = 0; i < 10; ++i) Add(1.8f);
   Add(5.9f);
   Add(6.1f);
   const std::vector<PointMotion> verdicts = Test();
   EXPECT_EQ(verdicts[0], PointMotion::kStatic);
-  EXPECT_EQ(verdicts[5], PointMotion::kStatic);
-  EXPECT_EQ(verdicts[6], PointMotion::kMovesSideways);
+  EXPECT_EQ(verdicts[10], PointMotion::kStatic);
+  EXPECT_EQ(verdicts[11], PointMotion::kMovesSideways);
+}
+
+// Or an object that fills most of the image would make its own motion the noise.
+TEST_F(PointMotionTest, PointsOnObjectsDoNotTellTheNoise) {
+  for (int i = 0; i < 20; ++i) Add(6);
+  for (int i = 0; i < 10; ++i) Add(0.5f);
+  EXPECT_EQ(Test()[0], PointMotion::kStatic) << "most points agree that it is noise";
+  on_object_.assign(20, 1);
+  on_object_.resize(30, 0);
+  EXPECT_EQ(Test()[0], PointMotion::kMovesSideways);
+  EXPECT_EQ(Test()[29], PointMotion::kStatic);
 }
 
 // Twice three sigmas: 0.132 m.
