@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/arguments.h"
 #include "apps/command.h"
 #include "apps/run_arguments.h"
 #include "bench/bench_run.h"
@@ -14,6 +15,7 @@
 #include "bench/report.h"
 #include "bench/slurm.h"
 #include "bench/task_run.h"
+#include "evaluation/json_text.h"
 #include "util/atomic_file.h"
 #include "util/options.h"
 
@@ -161,7 +163,7 @@ void Bench(BenchArguments& arguments) {
   Require(WriteFileAtomically(arguments.out / "suite.yaml",
                               YAML::Dump(OptionsToYaml(results.suite)) + "\n"));
   RenderSequences(arguments.out, arguments.jobs, results.plan);
-  Require(WriteFileAtomically(arguments.out / "plan.json", PlanToJson(results.plan).dump(2)));
+  Require(WriteFileAtomically(arguments.out / "plan.json", JsonText(PlanToJson(results.plan))));
   RunOpenTasks(arguments, results.plan);
   results.results = CollectResults(arguments.out, results.plan);
   for (const Peer& peer : peers) Require(AddPeer(peer, results));
@@ -186,20 +188,20 @@ void AddCompareCommand(CLI::App& bench) {
   ComparisonOptions& options = arguments->options;
   command->add_option("--tolerance", options.tolerance, "share by which a median error may grow")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(NumberFrom(0, 1000));
   command->add_option("--slack", options.slack_m, "metres by which it may grow where that is more")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(NumberFrom(0, 1000));
   command
       ->add_option("--coverage-tolerance", options.coverage_tolerance,
                    "share of the frames by which the coverage may fall, and mAP50 by itself")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(NumberFrom(0, 1000));
   command
       ->add_option("--time-tolerance", options.time_tolerance,
                    "share by which the median latency may grow; 0: times are not compared")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(NumberFrom(0, 1000));
   command->callback([arguments] { Compare(*arguments); });
 }
 
@@ -238,12 +240,12 @@ void AddOptions(CLI::App& command, BenchArguments& arguments) {
   command
       .add_option("--time-limit", arguments.time_limit_s,
                   "of every task, instead of the suite's, s")
-      ->check(CLI::PositiveNumber);
+      ->check(NumberFrom(0.001, 1e7));
   command
       .add_option("--max-frames", arguments.max_frames, "of every sequence, instead of the suite's")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 1000000000));
   command.add_option("--repeats", arguments.repeats, "of every variant, instead of the suite's")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 1000));
   CLI::Option* slurm =
       command.add_flag("--slurm", arguments.slurm, "run the tasks as a job array of Slurm");
   command.add_option("--slurm-options", arguments.slurm_options, "further words for sbatch")

@@ -5,10 +5,13 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "apps/arguments.h"
 #include "apps/detector_arguments.h"
 #include "apps/image_list.h"
 #include "apps/overlay.h"
+#include "evaluation/json_text.h"
 #include "io/image_reader.h"
 #include "io/png_encoder.h"
 #include "util/atomic_file.h"
@@ -47,36 +50,71 @@ void PrintRows(const std::string& stem, const Detections& detections,
   }
 }
 
+fs::path OverlayOf(const fs::path& image, const fs::path& folder) {
+  return folder / (image.stem().string() + ".png");
+}
+
+// Results must take the place of nothing that they are made from.
+void CheckTargets(const DetectArguments& arguments, const std::vector<fs::path>& images) {
+  std::set<fs::path> inputs = {ResolvePath(arguments.list_file)};
+  for (const fs::path& image : images) inputs.insert(ResolvePath(image));
+  const auto check = [&inputs](const fs::path& target, const char* option) {
+    if (!target.empty() && inputs.contains(ResolvePath(target))) {
+      throw CommandFailure(fmt::format(
+          "{}: would be overwritten, but is read; give {} another place", target.string(), option));
+    }
+  };
+  check(arguments.json_file, "--json");
+  if (arguments.overlay_folder.empty()) return;
+  for (const fs::path& image : images)
+    check(OverlayOf(image, arguments.overlay_folder), "--overlay");
+}
+
+// Finds, prints and draws what one image shows and adds it to `json`. An error: the image is of no
+// use.
+Status DetectIn(const fs::path& file, const DetectArguments& arguments, Detector& detector,
+                ImageReader& reader, nlohmann::json& json) {
+  const StatusOr<cv::Mat> image = reader.ReadColor(file);
+  if (!image.ok()) return image.status();
+  const StatusOr<Detections> detections = detector.DetectInImage(*image);
+  if (!detections.ok()) return Status::Error(file.string() + ": " + detections.message());
+  const std::string stem = file.stem().string();
+  if (arguments.json_file.empty()) PrintRows(stem, *detections, detector.class_names());
+  json[stem] = nlohmann::json::array();
+  for (const Detection& d : detections->objects)
+    json[stem].push_back(RowOf(d, detector.class_names()));
+  if (!arguments.overlay_folder.empty()) {
+    const cv::Mat drawn = DrawDetections(*image, detections->objects, detector.class_names());
+    Require(WriteFileAtomically(OverlayOf(file, arguments.overlay_folder), EncodePng(drawn)));
+  }
+  return Status::Ok();
+}
+
 void Detect(DetectArguments& arguments) {
   const std::vector<fs::path> images = Require(FindImages(arguments.source, arguments.list_file));
+  Require(ImagesByStem(images));
+  CheckTargets(arguments, images);
   const std::unique_ptr<Detector> detector = arguments.detector.Make();
   std::cerr << detector->description() << "\n";
-  if (!arguments.overlay_folder.empty()) {
-    std::error_code failure;
-    fs::create_directories(arguments.overlay_folder, failure);
-    if (failure)
-      throw CommandFailure(arguments.overlay_folder.string() +
-                           ": cannot be made: " + failure.message());
-  }
+  if (!arguments.overlay_folder.empty()) MakeFolder(arguments.overlay_folder);
   nlohmann::json json = nlohmann::json::object();
   ImageReader reader;
+  int num_failed = 0;
   Progress progress("detect", "images", static_cast<int>(images.size()));
   for (size_t i = 0; i < images.size(); ++i) {
-    const cv::Mat image = Require(reader.ReadColor(images[i]));
-    const Detections detections = Require(detector->DetectInImage(image));
-    const std::string stem = images[i].stem().string();
-    if (arguments.json_file.empty()) PrintRows(stem, detections, detector->class_names());
-    json[stem] = nlohmann::json::array();
-    for (const Detection& d : detections.objects)
-      json[stem].push_back(RowOf(d, detector->class_names()));
-    if (!arguments.overlay_folder.empty()) {
-      const cv::Mat drawn = DrawDetections(image, detections.objects, detector->class_names());
-      Require(WriteFileAtomically(arguments.overlay_folder / (stem + ".png"), EncodePng(drawn)));
+    const Status status = DetectIn(images[i], arguments, *detector, reader, json);
+    if (!status.ok()) {
+      ++num_failed;
+      std::cerr << "\nmsf-slam: " << status.message() << "\n";
     }
     progress.Update(static_cast<int>(i) + 1);
   }
   if (!arguments.json_file.empty())
-    Require(WriteFileAtomically(arguments.json_file, json.dump() + "\n"));
+    Require(WriteFileAtomically(arguments.json_file, JsonText(json, -1)));
+  if (num_failed > 0) {
+    throw CommandFailure(fmt::format("{} of {} images could not be used; the lines above say why",
+                                     num_failed, images.size()));
+  }
 }
 
 }  // namespace

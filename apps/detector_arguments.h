@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "apps/command.h"
@@ -52,23 +55,34 @@ struct DetectorArguments {
         ->capture_default_str();
     command.add_option("--size", size, "input of the network, WIDTHxHEIGHT in multiples of 32");
     command.add_option("--threads", options.threads, "threads of the network")
+        ->check(CLI::Range(1, 256))
         ->capture_default_str();
   }
 
   // The detector, or CommandFailure.
   std::unique_ptr<Detector> Make() {
-    if (!size.empty()) {
-      char end = 0;
-      if (std::sscanf(size.c_str(), "%dx%d%c", &options.width, &options.height, &end) != 2) {
-        throw CommandFailure("--size needs the form WIDTHxHEIGHT, e.g. 416x320, not '" + size +
-                             "'");
-      }
-    }
+    if (!size.empty()) ReadSize();
     std::unique_ptr<Detector> detector = Require(MakeDetector(options));
     if (held == "any")
       return std::make_unique<TurnSearch>(std::move(detector), options.confidence, mirrored);
     if (mirrored) return std::make_unique<MirrorAverage>(std::move(detector), options.confidence);
     return detector;
+  }
+
+ private:
+  // `size` into the options; MakeDetector looks whether they are multiples of 32.
+  void ReadSize() {
+    const char* end = size.data() + size.size();
+    const auto [x, bad_width] = std::from_chars(size.data(), end, options.width);
+    if (bad_width == std::errc() && x != end && *x == 'x') {
+      const auto [rest, bad_height] = std::from_chars(x + 1, end, options.height);
+      if (bad_height == std::errc() && rest == end &&
+          std::min(options.width, options.height) >= 32 &&
+          std::max(options.width, options.height) <= 4096)
+        return;
+    }
+    throw CommandFailure(fmt::format(
+        "--size needs the form WIDTHxHEIGHT, e.g. 416x320, of 32 to 4096 pixels, not '{}'", size));
   }
 };
 

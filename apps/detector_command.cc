@@ -12,6 +12,7 @@
 #include <opencv2/core/utility.hpp>
 #include <optional>
 
+#include "apps/arguments.h"
 #include "apps/detector_arguments.h"
 #include "apps/detector_training.h"
 #include "apps/image_list.h"
@@ -21,6 +22,7 @@
 #include "detection/onnx_editor.h"
 #include "detection/onnx_reader.h"
 #include "detection/sensitive_values.h"
+#include "evaluation/json_text.h"
 #include "io/image_reader.h"
 #include "util/atomic_file.h"
 #include "util/progress.h"
@@ -43,8 +45,11 @@ void AddInfo(CLI::App& detector) {
                    "ONNX file, or the name of a model that comes with MSF-SLAM")
       ->required();
   command->add_option("--width", arguments->width, "image width for the GFLOPs, pixels")
+      ->check(NetworkSide())
       ->capture_default_str();
-  command->add_option("--height", arguments->height, "image height, pixels")->capture_default_str();
+  command->add_option("--height", arguments->height, "image height, pixels")
+      ->check(NetworkSide())
+      ->capture_default_str();
   command->callback([arguments] {
     const Graph graph = Require(ReadOnnx(Require(FindModel(arguments->model))));
     std::cout << FormatSummary(Require(Summarize(graph, arguments->height, arguments->width)));
@@ -61,7 +66,7 @@ struct QuantizeArguments {
 
 // `count` images spread evenly over all.
 std::vector<fs::path> Spread(const std::vector<fs::path>& images, int count) {
-  const size_t wanted = std::min(images.size(), static_cast<size_t>(std::max(count, 1)));
+  const size_t wanted = std::min(images.size(), static_cast<size_t>(count));
   std::vector<fs::path> chosen;
   for (size_t i = 0; i < wanted; ++i) chosen.push_back(images[i * images.size() / wanted]);
   return chosen;
@@ -86,6 +91,11 @@ SensitiveValues CompareWithProgress(const Graph& graph, const ActivationRanges& 
 }
 
 void Quantize(const QuantizeArguments& arguments) {
+  DetectorOptions size;
+  size.width = arguments.options.width;
+  size.height = arguments.options.height;
+  Require(size.Check());
+  RequireWritableFile(arguments.out);
   const std::vector<fs::path> files =
       Spread(Require(FindImages(arguments.images, arguments.list_file)), arguments.count);
   const std::string bytes = Require(ReadModelBytes(Require(FindModel(arguments.model))));
@@ -127,6 +137,7 @@ void AddQuantize(CLI::App& detector) {
   command->add_option("--list", arguments->list_file,
                       "file that names the images to use, e.g. ImageSets/Main/trainval.txt");
   command->add_option("--count", arguments->count, "how many of them, spread evenly")
+      ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   command->add_option("--width", arguments->options.width,
                       "input width, pixels (0: the model's own, or 416)");
@@ -136,12 +147,12 @@ void AddQuantize(CLI::App& detector) {
       ->add_option("--keep-higher", arguments->sensitivity.max_values,
                    "at most so many values inside the network, those that int8 harms most, stay in "
                    "the higher precision (0: only the heads)")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0, 1000))
       ->capture_default_str();
   command
       ->add_option("--higher-share", arguments->sensitivity.max_share,
                    "of the multiply-adds, at most so many may take the higher precision for that")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(NumberFrom(0, 1))
       ->capture_default_str();
   command->add_option("--out", arguments->out, "the new model file")->required();
   command->callback([arguments] { Quantize(*arguments); });
@@ -180,6 +191,7 @@ cv::Mat TestPicture() {
 
 void Time(TimeArguments& arguments) {
   using Clock = std::chrono::steady_clock;
+  RequireWritableFile(arguments.json_file);
   // OpenCV spreads over all cores by itself; its setting is global, which only a program may touch.
   cv::setNumThreads(arguments.detector.options.threads);
   const cv::Mat picture = TestPicture();
@@ -207,7 +219,7 @@ void Time(TimeArguments& arguments) {
       {"model", detector->description()},     {"cpu_ms_median", median},
       {"cpu_ms_least", times_ms.front()},     {"first_detection_s", first_wall_s},
       {"first_detection_cpu_s", first_cpu_s}, {"memory_MB", memory}};
-  Require(WriteFileAtomically(arguments.json_file, json.dump(2) + "\n"));
+  Require(WriteFileAtomically(arguments.json_file, JsonText(json)));
 }
 
 void AddTime(CLI::App& detector) {

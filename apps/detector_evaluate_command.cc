@@ -6,10 +6,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/arguments.h"
 #include "apps/detector_arguments.h"
 #include "apps/detector_evaluation.h"
 #include "apps/detector_plots.h"
 #include "apps/overlay.h"
+#include "evaluation/json_text.h"
 #include "io/image_reader.h"
 #include "io/png_encoder.h"
 #include "util/atomic_file.h"
@@ -59,12 +61,6 @@ nlohmann::json ToJson(const DetectionMetrics& metrics, const std::vector<PersonR
   return json;
 }
 
-void MakeFolder(const fs::path& folder) {
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (failure) throw CommandFailure(folder.string() + ": cannot be made: " + failure.message());
-}
-
 // Copies of the images with what reaches `confidence`.
 void WriteOverlays(const fs::path& folder, const std::vector<VocImage>& images,
                    const std::vector<ScoredImage>& scored, double confidence) {
@@ -111,6 +107,9 @@ void PrintPersonRows(const std::vector<PersonRow>& rows, double false_per_image)
 }
 
 void Evaluate(EvaluateArguments& arguments) {
+  RequireWritableFile(arguments.json_file);
+  RequireWritableFolder(arguments.plot_folder);
+  RequireWritableFolder(arguments.overlay_folder);
   const bool has_set = arguments.data.rfind(':') != std::string::npos;
   std::vector<VocImage> images = Require(
       LoadVocSet(has_set ? arguments.data : arguments.data + ":test", PascalVocClassNames()));
@@ -141,7 +140,7 @@ void Evaluate(EvaluateArguments& arguments) {
       metrics.confidence, arguments.min_objects);
   PrintPersonRows(person, arguments.false_per_image);
   if (!arguments.json_file.empty()) {
-    Require(WriteFileAtomically(arguments.json_file, ToJson(metrics, person).dump(2) + "\n"));
+    Require(WriteFileAtomically(arguments.json_file, JsonText(ToJson(metrics, person))));
   }
   if (!arguments.plot_folder.empty()) {
     MakeFolder(arguments.plot_folder);
@@ -173,13 +172,15 @@ void AddDetectorEvaluateCommand(CLI::App& detector) {
   command
       ->add_option("--false-per-image", arguments->false_per_image,
                    "false person boxes per image for the person recall")
+      ->check(NumberFrom(1e-6, 1000))
       ->capture_default_str();
   command->add_flag(
       "--robustness", arguments->robustness,
       "person recall also in turned images (rotated: objects labelled by the boxes around "
       "their turned corners; outline: by those around turned ellipses, which fit people "
       "far better) and with people cut off by the border");
-  command->add_option("--limit", arguments->limit, "use the first images only");
+  command->add_option("--limit", arguments->limit, "use the first images only; 0: all")
+      ->check(CLI::Range(0, 1000000000));
   command->add_option("--json", arguments->json_file, "file for the figures");
   command->add_option("--plots", arguments->plot_folder,
                       "folder for the precision-recall curves (SVG)");

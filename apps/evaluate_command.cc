@@ -1,4 +1,5 @@
 // msf-slam evaluate: how far estimated trajectories are from the truth.
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -9,10 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "apps/arguments.h"
 #include "apps/command.h"
 #include "evaluation/evaluation.h"
 #include "evaluation/evaluation_report.h"
+#include "evaluation/json_text.h"
 #include "evaluation/mask_score.h"
+#include "evaluation/statistics.h"
 #include "evaluation/trajectory_plot.h"
 #include "io/tum_dataset.h"
 #include "util/atomic_file.h"
@@ -62,9 +66,7 @@ std::vector<std::string> NamesOf(const std::vector<fs::path>& files) {
 
 void WritePlots(const fs::path& folder, const Trajectory& truth,
                 const std::vector<Evaluation>& evaluations) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw CommandFailure(folder.string() + ": cannot be made: " + error.message());
+  MakeFolder(folder);
   Require(WriteFileAtomically(folder / "trajectory.svg", PlotTrajectories(truth, evaluations)));
   Require(WriteFileAtomically(folder / "error.svg", PlotErrors(evaluations)));
   std::cout << "plots: " << (folder / "trajectory.svg").string() << ", "
@@ -82,7 +84,20 @@ void WriteJson(const EvaluateArguments& arguments, const std::vector<Evaluation>
   for (const Evaluation& evaluation : evaluations)
     json["estimates"].push_back(EvaluationToJson(evaluation));
   for (const MaskScore& score : scores) json["masks"].push_back(MaskScoreToJson(score));
-  Require(WriteFileAtomically(arguments.json_file, json.dump(2) + "\n"));
+  Require(WriteFileAtomically(arguments.json_file, JsonText(json)));
+}
+
+// Numbers of a trajectory may be so large that their squares are none.
+void RequireFinite(const Evaluation& evaluation) {
+  for (const ErrorSeries* series :
+       {&evaluation.absolute.translation_m, &evaluation.per_frame.translation_m,
+        &evaluation.per_frame.rotation_rad, &evaluation.per_second.translation_m,
+        &evaluation.per_second.rotation_rad}) {
+    if (series->value.empty() || std::isfinite(ComputeStatistics(series->value).rmse)) continue;
+    throw CommandFailure(evaluation.name +
+                         ": the errors are no finite numbers; look for senseless positions in the "
+                         "trajectory and in the true one");
+  }
 }
 
 std::vector<Evaluation> EvaluateTrajectories(const EvaluateArguments& arguments) {
@@ -99,6 +114,7 @@ std::vector<Evaluation> EvaluateTrajectories(const EvaluateArguments& arguments)
   std::cout << FormatTable(evaluations);
   if (!options.num_input_frames)
     std::cout << "The coverage needs the number of input frames: --dataset DIR or --frames N.\n";
+  for (const Evaluation& evaluation : evaluations) RequireFinite(evaluation);
   if (!arguments.plot_folder.empty()) WritePlots(arguments.plot_folder, truth, evaluations);
   return evaluations;
 }
@@ -128,6 +144,8 @@ void Evaluate(const EvaluateArguments& arguments) {
     throw CommandFailure(
         "name the true trajectory and at least one estimated one, or --masks DIR and --labels "
         "FILE");
+  RequireWritableFile(arguments.json_file);
+  RequireWritableFolder(arguments.plot_folder);
   std::vector<Evaluation> evaluations;
   std::vector<MaskScore> scores;
   if (!arguments.estimate_files.empty()) evaluations = EvaluateTrajectories(arguments);
@@ -151,7 +169,7 @@ void AddEvaluateCommand(CLI::App& app) {
                       "write trajectory.svg and error.svg to this folder");
   CLI::Option* frames = command->add_option("--frames", arguments->num_frames,
                                             "number of input frames, for the coverage");
-  frames->check(CLI::PositiveNumber);
+  frames->check(CLI::Range(1, 1000000000));
   command
       ->add_option("--dataset", arguments->dataset_folder,
                    "count the input frames of this data set, for the coverage")

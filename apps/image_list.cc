@@ -7,6 +7,7 @@
 #include <map>
 
 #include "io/frame_list.h"
+#include "io/presence.h"
 
 namespace msf {
 namespace {
@@ -35,7 +36,7 @@ StatusOr<std::vector<fs::path>> ImagesInFolder(const fs::path& folder) {
 StatusOr<std::vector<fs::path>> ImagesOfSequence(const fs::path& folder) {
   std::vector<std::string> warnings;
   std::vector<fs::path> images;
-  if (fs::exists(folder / "rgb.txt")) {
+  if (IsThere(folder / "rgb.txt")) {
     auto list = ReadImageList(folder / "rgb.txt", warnings);
     if (!list.ok()) return list.status();
     for (const ListedImage& image : *list) images.push_back(image.file);
@@ -50,18 +51,18 @@ StatusOr<std::vector<fs::path>> ImagesOfSequence(const fs::path& folder) {
 StatusOr<std::vector<fs::path>> AllImages(const fs::path& source) {
   std::error_code ignored;
   if (fs::is_regular_file(source, ignored)) return std::vector<fs::path>{source};
-  if (!fs::is_directory(source, ignored))
+  if (!IsFolder(source))
     return Status::Error(source.string() + ": there is no such image or folder");
-  if (fs::exists(source / "rgb.txt") || fs::exists(source / "associations.txt"))
+  if (IsThere(source / "rgb.txt") || IsThere(source / "associations.txt"))
     return ImagesOfSequence(source);
-  if (fs::is_directory(source / "JPEGImages")) return ImagesInFolder(source / "JPEGImages");
+  if (IsFolder(source / "JPEGImages")) return ImagesInFolder(source / "JPEGImages");
   return ImagesInFolder(source);
 }
 
 StatusOr<std::vector<fs::path>> Pick(const std::vector<fs::path>& images,
                                      const fs::path& list_file) {
-  std::map<std::string, fs::path> by_stem;
-  for (const fs::path& image : images) by_stem[image.stem().string()] = image;
+  const StatusOr<std::map<std::string, fs::path>> by_stem = ImagesByStem(images);
+  if (!by_stem.ok()) return by_stem.status();
   std::ifstream list(list_file);
   if (!list)
     return Status::Error(list_file.string() +
@@ -70,8 +71,8 @@ StatusOr<std::vector<fs::path>> Pick(const std::vector<fs::path>& images,
   for (std::string line; std::getline(list, line);) {
     const std::string stem = line.substr(0, line.find_first_of(" \t\r"));
     if (stem.empty()) continue;
-    const auto found = by_stem.find(stem);
-    if (found == by_stem.end())
+    const auto found = by_stem->find(stem);
+    if (found == by_stem->end())
       return Status::Error(
           fmt::format("{}: lists '{}', which is not among the images", list_file.string(), stem));
     picked.push_back(found->second);
@@ -89,6 +90,18 @@ StatusOr<std::vector<fs::path>> FindImages(const fs::path& source, const fs::pat
                          ": holds no PNG or JPEG image");
   }
   return images;
+}
+
+StatusOr<std::map<std::string, fs::path>> ImagesByStem(const std::vector<fs::path>& images) {
+  std::map<std::string, fs::path> by_stem;
+  for (const fs::path& image : images) {
+    const auto [known, is_new] = by_stem.try_emplace(image.stem().string(), image);
+    if (is_new || known->second == image) continue;
+    return Status::Error(
+        fmt::format("{} and {}: would have one name in the results, '{}'; rename one of them",
+                    known->second.string(), image.string(), known->first));
+  }
+  return by_stem;
 }
 
 }  // namespace msf

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,5 +16,10 @@ namespace msf {
 // and a listed image that is not there are errors.
 StatusOr<std::vector<std::filesystem::path>> FindImages(const std::filesystem::path& source,
                                                         const std::filesystem::path& list_file);
+
+// The images by their stems, which name them in lists and results; two of the same stem are an
+// error that names both.
+StatusOr<std::map<std::string, std::filesystem::path>> ImagesByStem(
+    const std::vector<std::filesystem::path>& images);
 
 }  // namespace msf

@@ -2,6 +2,7 @@
 #include "apps/command.h"
 #include "apps/detector_training.h"
 #include "apps/run_program.h"
+#include "bench/machine.h"
 
 int main(int argc, char** argv) {
   CLI::App app(
@@ -9,6 +10,7 @@ int main(int argc, char** argv) {
       "picture",
       "msf-slam");
   app.require_subcommand(1);
+  app.set_version_flag("--version", msf::ReadBuildInfo().ToString());
   msf::AddRunCommand(app);
   msf::AddEvaluateCommand(app);
   msf::AddSimulateCommand(app);

@@ -1,5 +1,6 @@
 #include "apps/run_arguments.h"
 
+#include "apps/arguments.h"
 #include "apps/command.h"
 #include "sensor/camera.h"
 #include "util/options.h"
@@ -50,8 +51,8 @@ void DeclareRunArguments(CLI::App& command, RunArguments& arguments) {
       ->check(CLI::Range(1, 1000))
       ->needs(real_time);
   command.add_option("--max-frames", arguments.max_frames, "stop after so many frames")
-      ->check(CLI::PositiveNumber);
-  command.add_option("--seed", arguments.seed, "of everything random");
+      ->check(CLI::Range(1, 1000000000));
+  command.add_option("--seed", arguments.seed, "of everything random")->check(Seed());
   command.footer("Options (--set section.key=value), with their defaults:\n" +
                  DescribeOptions<SystemOptions>() + "\nKeys of a camera file, with defaults:\n" +
                  DescribeOptions<Camera>());
@@ -59,9 +60,10 @@ void DeclareRunArguments(CLI::App& command, RunArguments& arguments) {
 
 SystemOptions ResolveOptions(const RunArguments& arguments) {
   SystemOptions options;
-  // Frames from a disk can wait for the mapper; those of a camera cannot.
-  options.wait_for_mapping = !arguments.real_time;
   if (!arguments.config_file.empty()) Require(LoadOptions(arguments.config_file, options));
+  // Frames from a disk can wait for the mapper; those of a camera cannot, whatever an earlier run
+  // did.
+  options.wait_for_mapping = !arguments.real_time;
   for (const std::string& assignment : arguments.assignments)
     Require(SetOption(assignment, options));
   if (!arguments.dynamic.empty()) options.dynamic.mode = arguments.dynamic;
@@ -69,6 +71,10 @@ SystemOptions ResolveOptions(const RunArguments& arguments) {
   if (arguments.deterministic) options.deterministic = true;
   if (arguments.seed) options.seed = *arguments.seed;
   Require(options.Check());
+  if (arguments.real_time && options.deterministic) {
+    throw CommandFailure(
+        "--realtime cannot be deterministic: set deterministic=false, or leave --realtime out");
+  }
   if (options.dynamic.mode == "off" && (arguments.labels || !arguments.overlay.empty())) {
     throw CommandFailure(
         "--overlay and --labels tell what was found to move; with --dynamic off nothing is looked "

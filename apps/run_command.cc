@@ -1,6 +1,7 @@
 // msf-slam run: from a dataset folder to a trajectory, a map and a report.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -17,6 +18,7 @@
 #include "io/tum_dataset.h"
 #include "system/frame_prefetcher.h"
 #include "system/system.h"
+#include "util/atomic_file.h"
 #include "util/options.h"
 #include "util/progress.h"
 #include "viewer/overlay_recorder.h"
@@ -33,21 +35,37 @@ constexpr size_t kFramesAhead = 4;
 std::atomic<bool> interrupted = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
 
-// The first Ctrl-C ends the run early with all results written; the second one kills.
+// The first Ctrl-C, SIGTERM or closed terminal ends the run early with all results written; a
+// second Ctrl-C or SIGTERM kills.
 class InterruptGuard {
  public:
-  InterruptGuard() : before_(std::signal(SIGINT, &OnInterrupt)) {}
-  ~InterruptGuard() { std::signal(SIGINT, before_); }
+  InterruptGuard()
+      : interrupt_before_(std::signal(SIGINT, &OnSignal)),
+        terminate_before_(std::signal(SIGTERM, &OnSignal)),
+        hangup_before_(std::signal(SIGHUP, &OnSignal)) {
+    if (hangup_before_ == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup wants the run to go on
+  }
+  ~InterruptGuard() {
+    std::signal(SIGINT, interrupt_before_);
+    std::signal(SIGTERM, terminate_before_);
+    std::signal(SIGHUP, hangup_before_);
+  }
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
  private:
-  static void OnInterrupt(int) {
+  // Both the shell and the system tell of a terminal that closes: a second SIGHUP means nothing.
+  static void OnSignal(int signal) {
     interrupted = true;
-    std::signal(SIGINT, SIG_DFL);
+    std::signal(signal, signal == SIGHUP ? SIG_IGN : SIG_DFL);
   }
-  void (*before_)(int);
+  void (*interrupt_before_)(int);
+  void (*terminate_before_)(int);
+  void (*hangup_before_)(int);
 };
+
+// The folder's own name, also when it was given as "." or by a link.
+std::string NameOf(const fs::path& folder) { return ResolvePath(folder).filename().string(); }
 
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -58,20 +76,21 @@ class Pacer {
  public:
   Pacer(bool real_time, double first_time_s) : real_time_(real_time), first_time_s_(first_time_s) {}
 
-  // Waits for the frame's time. False: it is too late, a live camera has dropped it at
-  // `dropped_at_s` for want of buffers.
+  // Waits for the frame's time, or until the run is interrupted. False: it is too late, a live
+  // camera has dropped it at `dropped_at_s` for want of buffers.
   bool WaitFor(double time_s, double dropped_at_s) {
     if (!real_time_) return true;
     if (DelayOf(dropped_at_s) > 0) return false;
-    std::this_thread::sleep_until(start_ +
-                                  std::chrono::duration_cast<Clock::duration>(
-                                      std::chrono::duration<double>(time_s - first_time_s_)));
+    for (double left_s = -DelayOf(time_s); left_s > 0 && !interrupted; left_s = -DelayOf(time_s))
+      std::this_thread::sleep_for(std::chrono::duration<double>(std::min(left_s, kNap_s)));
     return true;
   }
   // Seconds since the camera had the frame.
   double DelayOf(double time_s) const { return SecondsSince(start_) - (time_s - first_time_s_); }
 
  private:
+  static constexpr double kNap_s = 0.1;  // an interrupt waits no longer
+
   const bool real_time_;
   const double first_time_s_;
   const Clock::time_point start_ = Clock::now();
@@ -80,7 +99,8 @@ class Pacer {
 struct Recording {
   std::vector<FrameRecord> frames;
   std::vector<int64_t>
-      tracked_index;  // per frame: its place among those given to the system, -1 = not given
+      tracked_index;        // per frame: its place among those given to the system, -1 = not given
+  int64_t num_tracked = 0;  // given to the system
   double time_to_first_pose_s = 0;
 };
 
@@ -99,6 +119,7 @@ class RunSession {
       : arguments_(arguments),
         options_(options),
         dataset_(std::move(dataset)),
+        name_(NameOf(dataset_.folder())),
         recorder_(std::make_shared<DynamicsRecorder>(arguments.labels)),
         system_(Require(System::Create(options, dataset_.camera()))) {
     system_->AddObserver(recorder_);
@@ -128,6 +149,7 @@ class RunSession {
   const RunArguments& arguments_;
   const SystemOptions options_;
   TumDataset dataset_;
+  const std::string name_;
   const std::shared_ptr<DynamicsRecorder> recorder_;
   std::shared_ptr<OverlayRecorder> overlay_;  // null when nobody wants one
   std::unique_ptr<System> system_;
@@ -142,14 +164,16 @@ Recording RunSession::TrackAll(Clock::time_point start) {
     prefetcher = std::make_unique<FramePrefetcher>(count, kFramesAhead, load);
   Progress progress("run", "frames", static_cast<int>(count));
   Pacer pacer(arguments_.real_time, dataset_.time_s(0));
-  for (size_t i = 0; i < count && !interrupted; ++i) {
+  for (size_t i = 0; i < count && !interrupted && system_->health().ok(); ++i) {
     const StatusOr<RgbdFramePtr> frame = prefetcher ? *prefetcher->Next() : load(i);
     const size_t pushed_out_by = i + static_cast<size_t>(arguments_.buffers);
     const double dropped_at_s = pushed_out_by < count ? dataset_.time_s(pushed_out_by)
                                                       : std::numeric_limits<double>::infinity();
+    const bool is_in_time = pacer.WaitFor(dataset_.time_s(i), dropped_at_s);
+    if (interrupted) break;
     recording.tracked_index.push_back(-1);
     FrameRecord record;
-    if (pacer.WaitFor(dataset_.time_s(i), dropped_at_s)) {
+    if (is_in_time) {
       record = TrackOne(frame, recording);
       if (arguments_.real_time)
         record.timings_ms["delay"] = 1000 * pacer.DelayOf(dataset_.time_s(i));
@@ -176,9 +200,7 @@ FrameRecord RunSession::TrackOne(const StatusOr<RgbdFramePtr>& frame, Recording&
     missing.note = result.message();
     return missing;
   }
-  recording.tracked_index.back() =
-      std::count_if(recording.tracked_index.begin(), recording.tracked_index.end(),
-                    [](int64_t i) { return i >= 0; });
+  recording.tracked_index.back() = recording.num_tracked++;
   FrameRecord record = RecordOf(*result);
   record.dynamics = recorder_->TakeLast();
   return record;
@@ -237,24 +259,24 @@ void RunSession::DescribeDynamics(const DetectionStatistics& detection, RunResul
 }
 
 Status RunSession::WriteRecordings(const fs::path& folder) {
-  if (overlay_) MSF_RETURN_IF_ERROR(overlay_->Finish());
+  const Status overlay = overlay_ ? overlay_->Finish() : Status::Ok();
   const fs::path labels = folder / "labels.csv", objects = folder / "objects.csv";
   if (arguments_.labels) {
     MSF_RETURN_IF_ERROR(WriteLabels(labels, recorder_->labels()));
-    return WriteObjects(objects, recorder_->labels());
+    MSF_RETURN_IF_ERROR(WriteObjects(objects, recorder_->labels()));
+    return overlay;
   }
   std::error_code ignored;
   for (const fs::path& of_an_earlier_run : {labels, objects})
     fs::remove(of_an_earlier_run, ignored);
-  return Status::Ok();
+  return overlay;
 }
 
 RunResults RunSession::Run(Clock::time_point start) {
-  const InterruptGuard guard;
   const Recording recording = TrackAll(start);
   const Reconstruction reconstruction = system_->Finish();
   RunResults results;
-  results.name = fs::canonical(dataset_.folder()).filename().string();
+  results.name = name_;
   results.mode = options_.deterministic ? "deterministic"
                  : arguments_.real_time ? "real time"
                                         : "threaded";
@@ -263,6 +285,10 @@ RunResults RunSession::Run(Clock::time_point start) {
   results.num_loops = reconstruction.num_loops;
   results.num_merges = reconstruction.num_merges;
   DescribeDynamics(reconstruction.detection, results);
+  if (!reconstruction.health.ok()) {
+    results.failure = reconstruction.health.message();
+    results.warnings.push_back(results.failure);
+  }
   if (overlay_ && overlay_->num_left_out() > 0) {
     results.warnings.push_back(fmt::format(
         "the overlay lacks {} frames that could not be drawn in time", overlay_->num_left_out()));
@@ -282,6 +308,9 @@ RunResults RunSession::Run(Clock::time_point start) {
   YAML::Emitter yaml;
   yaml << OptionsToYaml(options_);
   results.config_yaml = std::string(yaml.c_str()) + "\n";
+  YAML::Emitter camera_yaml;
+  camera_yaml << OptionsToYaml(dataset_.camera());
+  results.camera_yaml = std::string(camera_yaml.c_str()) + "\n";
   ReadGroundTruth(results);
   return results;
 }
@@ -297,17 +326,38 @@ std::string WhyNothingWasTracked(const RunResults& results) {
          "camera's depth_factor";
 }
 
+// Results next to a recording could be taken for a part of it, and the other way round.
+void CheckOutFolder(const fs::path& out_folder, const fs::path& dataset) {
+  if (ResolvePath(out_folder) != ResolvePath(dataset)) return;
+  throw CommandFailure(fmt::format("--out {}: that is the data set itself; name another folder",
+                                   out_folder.string()));
+}
+
+// An overlay takes the place of what is there; inside the folder of results it has one of its own.
+void CheckOverlayPlace(const fs::path& overlay, const fs::path& out_folder) {
+  if (overlay.empty()) return;
+  const fs::path place = ResolvePath(overlay), results = ResolvePath(out_folder);
+  if (std::mismatch(place.begin(), place.end(), results.begin(), results.end()).first !=
+      place.end())
+    return;
+  throw CommandFailure(
+      fmt::format("--overlay {}: the results go there as well ({}); name another place, such as {}",
+                  overlay.string(), out_folder.string(), (out_folder / "overlay.mp4").string()));
+}
+
 void Run(const RunArguments& arguments) {
   const Clock::time_point start = Clock::now();
   cv::setNumThreads(1);  // two cores belong to the stages; OpenCV's pool would only disturb them
   const SystemOptions options = ResolveOptions(arguments);
   TumDataset dataset = Require(TumDataset::Open(arguments.dataset, arguments.camera));
   fs::path out_folder = arguments.out_folder;
-  if (out_folder.empty())
-    out_folder = fs::path("out") / fs::canonical(arguments.dataset).filename();
+  if (out_folder.empty()) out_folder = fs::path("out") / NameOf(arguments.dataset);
+  CheckOutFolder(out_folder, arguments.dataset);
+  CheckOverlayPlace(arguments.overlay, out_folder);
 
   RunSession session(arguments, options, std::move(dataset));
   Require(PrepareRunFolder(out_folder));
+  const InterruptGuard guard;  // until all is written
   const RunResults results = session.Run(start);
   const RunReport report = MakeRunReport(results);
   const Status written = WriteRunFolder(out_folder, results, report);
@@ -317,6 +367,10 @@ void Run(const RunArguments& arguments) {
   Require(recorded);
   std::cout << "results: " << out_folder.string() << "\n";
   if (!arguments.overlay.empty()) std::cout << "overlay: " << arguments.overlay.string() << "\n";
+  if (!results.failure.empty()) {
+    throw CommandFailure(
+        fmt::format("{}; the results end after {} frames", results.failure, results.frames.size()));
+  }
   if (report.num_poses == 0) throw CommandFailure(WhyNothingWasTracked(results));
 }
 

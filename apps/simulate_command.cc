@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 
+#include "apps/arguments.h"
 #include "apps/command.h"
 #include "io/dataset_writer.h"
 #include "simulation/cast.h"
@@ -86,9 +87,10 @@ void AddSimulateCommand(CLI::App& app) {
   command
       ->add_option("--seed", arguments->seed,
                    "another seed gives another world, noise and hand tremor")
+      ->check(Seed())
       ->capture_default_str();
   command->add_option("--frames", arguments->frames, "stop after this many frames")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 1000000));
   command->add_option("--set", arguments->settings,
                       "override the scenario, e.g. color.blur_samples=4");
   command->add_flag("--without-actors", arguments->without_actors,

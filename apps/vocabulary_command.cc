@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 
+#include "apps/arguments.h"
 #include "apps/command.h"
 #include "apps/image_list.h"
 #include "feature/orb_extractor.h"
@@ -85,6 +86,7 @@ void Print(const Vocabulary& vocabulary, const std::filesystem::path& file) {
 void Train(const TrainArguments& arguments) {
   Require(arguments.training.Check());
   Require(OrbOptions{.num_features = arguments.num_features}.Check());
+  RequireWritableFile(arguments.file);
   const std::vector<std::filesystem::path> files = ListImages(arguments.sources);
   const std::vector<std::vector<Descriptor>> images = DescribeAll(files, arguments.num_features);
   size_t num_descriptors = 0;
@@ -124,6 +126,7 @@ void AddVocabularyCommands(CLI::App& app) {
   train->add_option("--features", arguments->num_features, "points per image")
       ->capture_default_str();
   train->add_option("--seed", arguments->training.seed, "seed of the random choices")
+      ->check(Seed())
       ->capture_default_str();
   train->callback([arguments] { Train(*arguments); });
 

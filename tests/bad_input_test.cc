@@ -69,6 +69,12 @@ class BadInputTest : public ::testing::Test {
   Outcome Run(const std::string& arguments = "") const {
     return RunProgram("run " + Path("data") + " --out " + Path("out") + " " + arguments);
   }
+  // A run at the pace of the time stamps that gets a signal after five seconds.
+  Outcome RunAndSend(const std::string& signal) const {
+    // In the foreground, or else it sends the signal twice, and the second one kills.
+    return RunShell("timeout --foreground --preserve-status -k 30 -s " + signal +
+                    " 5 " MSF_PROGRAM " run " + Path("data") + " --realtime --out " + Path("out"));
+  }
   nlohmann::json Report() const {
     return nlohmann::json::parse(ReadWholeFile(folder_ / "out/report.json"));
   }
@@ -96,6 +102,22 @@ TEST_F(BadInputTest, FramesThatCannotBeUsedAreLeftOutAndCounted) {
         Depth(3) + ": is no image or a damaged one", Depth(4) + ": the file is empty",
         Color(5) + ": the image has 320x240 pixels", Depth(6) + ": a depth image is 16-bit"})
     EXPECT_THAT(csv, HasSubstr(why));
+}
+
+TEST_F(BadInputTest, ImagesThatClaimToBeHugeAreDamagedOnes) {
+  // The beginning of a PNG of 200000 x 200000 pixels with transparency.
+  const std::string png(
+      "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\x03\x0d\x40\0\x03\x0d\x40\x08\x06\0\0\0\xf9\x3b\x88\x0a",
+      33);
+  folder_.Write("data/" + Word(2, 1), png);
+  folder_.Write("data/" + Word(3, 3), png);
+  for (const char* mode : {"", "--deterministic"}) {
+    const Outcome outcome = Run(mode);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    EXPECT_THAT(outcome.output,
+                HasSubstr("2 of 8 frames could not be used; the first is frame 2: " + Color(2) +
+                          ": is no image or a damaged one"));
+  }
 }
 
 TEST_F(BadInputTest, ASequenceWithoutAnyUsableFrameIsAFailure) {
@@ -198,6 +220,60 @@ TEST_F(BadInputTest, AGroundTruthThatIsNoneOnlyCostsTheEvaluation) {
   EXPECT_FALSE(fs::exists(folder_ / "out/error.svg")) << "it shows another run";
 }
 
+TEST_F(BadInputTest, AGroundTruthThatIsACircleOfLinksOnlyCostsTheEvaluation) {
+  fs::remove(folder_ / "data/groundtruth.txt");
+  fs::create_symlink("groundtruth.txt", folder_ / "data/groundtruth.txt");
+  const Outcome outcome = Run();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("groundtruth.txt: cannot be opened (Too many levels"));
+  EXPECT_EQ(Report().at("frames").at("with_pose"), kFrames);
+}
+
+TEST_F(BadInputTest, NamesNeedNotBeUtf8) {
+  fs::rename(folder_ / "data", folder_ / "d\xff");
+  fs::remove(folder_ / ("d\xff/" + Word(2, 1)));
+  const Outcome outcome = RunProgram("run " + Path("d\xff") + " --out " + Path("out"));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_EQ(Report().at("name"), "d\xef\xbf\xbd") << "the sign for what is no letter";
+  for (const char* name : {"trajectory.txt", "frames.csv", "map.ply", "error.svg"})
+    EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
+}
+
+TEST_F(BadInputTest, ADataSetThatIsRenamedMeanwhileDoesNotCostTheResults) {
+  WriteStamps([](int frame) { return std::to_string(1000 + frame); });
+  const Outcome outcome = RunShell(
+      "{ sleep 3; mv " + Path("data") + " " + Path("moved") + "; } & " MSF_PROGRAM " run " +
+      Path("data") + " --realtime --out " + Path("out") + "; code=$?; wait; (exit $code)");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_FALSE(fs::exists(folder_ / "data"));
+  EXPECT_EQ(Report().at("name"), "data");
+  EXPECT_EQ(Report().at("frames").at("input"), kFrames);
+}
+
+TEST_F(BadInputTest, AnOverlayDoesNotTakeThePlaceOfTheResults) {
+  folder_.Write("keep.txt", "");
+  for (const char* overlay : {"out", "out/", "out/../out", "."}) {
+    ExpectSentence(Run("--overlay " + Path(overlay)), "the results go there as well");
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+    EXPECT_TRUE(fs::exists(folder_ / "keep.txt"));
+  }
+  EXPECT_EQ(Run("--detector none --overlay " + Path("out/pictures")).exit_code, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "out/report.json"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/pictures/000007.jpg"));
+}
+
+TEST_F(BadInputTest, ASimulationThatCannotBeLeavesTheOldOne) {
+  for (const char* length : {"duration_s=1e12", "duration_s=1e-3", "fps=1e9"}) {
+    ExpectSentence(
+        RunProgram("simulate static --set " + std::string(length) + " --out " + Path("data")),
+        "duration_s and fps must give at least one frame");
+  }
+  folder_.Write("data/notes.txt", "precious");
+  ExpectSentence(RunProgram("simulate static --frames 1 --out " + Path("data")),
+                 "data/notes.txt: is no part of the data set");
+  EXPECT_EQ(Run().exit_code, 0);
+}
+
 TEST_F(BadInputTest, AFullDiskLeavesWholeFilesOnly) {
   // A limit on the size of files stands for the end of the disk: map.ply is the largest.
   const Outcome outcome = RunShell("trap '' XFSZ; ulimit -f 24; " MSF_PROGRAM " run " +
@@ -210,6 +286,17 @@ TEST_F(BadInputTest, AFullDiskLeavesWholeFilesOnly) {
   }
 }
 
+TEST_F(BadInputTest, ADeterministicConfigurationDoesNotFitRealTime) {
+  folder_.Write("config.yaml", "deterministic: true\n");
+  ExpectSentence(Run("--realtime --config " + Path("config.yaml")),
+                 "--realtime cannot be deterministic");
+}
+
+TEST_F(BadInputTest, ADataSetIsNoPlaceForResults) {
+  ExpectSentence(RunProgram("run " + Path("data") + " --out " + Path("out/../data/")),
+                 "that is the data set itself");
+}
+
 TEST_F(BadInputTest, AResultsFolderThatCannotBeIsFoundBeforeTheRun) {
   folder_.Write("file", "");
   const Outcome outcome = RunProgram("run " + Path("data") + " --out " + Path("file/out"));
@@ -220,16 +307,80 @@ TEST_F(BadInputTest, AResultsFolderThatCannotBeIsFoundBeforeTheRun) {
 TEST_F(BadInputTest, AnInterruptedRunWritesWhatItHas) {
   // Two seconds from frame to frame, so that the interrupt meets the run in its middle.
   WriteStamps([](int frame) { return std::to_string(1000 + 2 * frame); });
-  // In the foreground, or else it sends the signal twice, and the second one kills.
-  const Outcome outcome =
-      RunShell("timeout --foreground --preserve-status -s INT 5 " MSF_PROGRAM " run " +
-               Path("data") + " --realtime --out " + Path("out"));
+  for (const std::string signal : {"INT", "TERM", "HUP"}) {
+    const Outcome outcome = RunAndSend(signal);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    EXPECT_THAT(outcome.output, HasSubstr("interrupted"));
+    EXPECT_EQ(Report().at("interrupted"), true);
+    const size_t num_poses = ReadTrajectory(folder_ / "out/trajectory.txt")->size();
+    EXPECT_GE(num_poses, 1u);
+    EXPECT_LT(num_poses, static_cast<size_t>(kFrames));
+    fs::remove_all(folder_ / "out");
+  }
+}
+
+TEST_F(BadInputTest, ARunThatWaitsForAFrameForDaysCanBeInterrupted) {
+  WriteStamps([](int frame) { return std::to_string(1000 + (frame < 4 ? frame : 1e6 * frame)); });
+  const Outcome outcome = RunAndSend("INT");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output, HasSubstr("interrupted"));
-  EXPECT_EQ(Report().at("interrupted"), true);
-  const size_t num_poses = ReadTrajectory(folder_ / "out/trajectory.txt")->size();
-  EXPECT_GE(num_poses, 1u);
-  EXPECT_LT(num_poses, static_cast<size_t>(kFrames));
+  EXPECT_EQ(Report().at("frames").at("input"), 4);
+}
+
+TEST(Detect, AnImageThatIsNoneDoesNotCostTheOthers) {
+  const TestFolder folder;
+  cv::imwrite((folder / "a.png").string(), cv::Mat(48, 64, CV_8UC3, cv::Scalar(99)));
+  folder.Write("b.png", "no image");
+  cv::imwrite((folder / "c\xff.png").string(), cv::Mat(48, 64, CV_8UC3, cv::Scalar(99)));
+  const std::string path = folder.path().string();
+  const Outcome outcome = RunProgram("detect " + path + " --held upright --not-mirrored --json " +
+                                     path + "/found.json");
+  ExpectSentence(outcome, "1 of 3 images could not be used");
+  EXPECT_THAT(outcome.output, HasSubstr("b.png: is no image or a damaged one"));
+  const nlohmann::json json = nlohmann::json::parse(ReadWholeFile(folder / "found.json"));
+  EXPECT_TRUE(json.contains("a"));
+  EXPECT_FALSE(json.contains("b"));
+  EXPECT_EQ(json.size(), 2u);
+}
+
+TEST(Detect, WhatIsReadIsNotOverwritten) {
+  const TestFolder folder;
+  fs::create_directory(folder / "in");
+  fs::create_directory_symlink("in", folder / "link");
+  const std::string a = folder.Write("in/a.png", "the only copy"),
+                    list = folder.Write("list.txt", "a\n");
+  const std::string path = folder.path().string(), detect = "detect " + path + "/in ";
+  for (const char* target : {"--overlay /in", "--overlay /link/", "--json /in/a.png"}) {
+    std::string option = target;
+    option.insert(option.find('/'), path);
+    ExpectSentence(RunProgram(detect + option), "a.png: would be overwritten, but is read");
+  }
+  ExpectSentence(RunProgram(detect + "--list " + list + " --json " + list), "would be overwritten");
+  EXPECT_EQ(ReadWholeFile(a), "the only copy");
+}
+
+TEST(Detect, ImagesOfOneNameAreBothNamed) {
+  const TestFolder folder;
+  const std::string jpg = folder.Write("x.jpg", ""), png = folder.Write("x.png", "");
+  const std::string list = folder.Write("list.txt", "x\n");
+  const std::string detect = "detect " + folder.path().string();
+  ExpectSentence(RunProgram(detect), jpg + " and " + png + ": would have one name");
+  ExpectSentence(RunProgram(detect + " --list " + list), jpg + " and " + png);
+}
+
+TEST(Detect, ListsThatAreACircleOfLinksGetASentence) {
+  const TestFolder folder;
+  fs::create_symlink("rgb.txt", folder / "rgb.txt");
+  ExpectSentence(RunProgram("detect " + folder.path().string()), "rgb.txt: cannot be opened");
+  ExpectSentence(RunProgram("detect " + (folder / "rgb.txt").string()), "no such image or folder");
+}
+
+TEST(Output, ThatCannotBeWrittenIsAFailure) {
+  for (const char* arguments : {"--help", "run --help"}) {
+    ExpectSentence(RunShell(MSF_PROGRAM " " + std::string(arguments) + " > /dev/full"),
+                   "not all of the output could be written to stdout");
+    ExpectSentence(RunShell(MSF_PROGRAM " " + std::string(arguments) + " >&-"),
+                   "not all of the output could be written to stdout");
+  }
 }
 
 TEST(Processor, APrecisionThatItLacksIsNamed) {

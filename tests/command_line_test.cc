@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
+#include <tuple>
 
 #include "io/test_folder.h"
 #include "io/trajectory.h"
@@ -35,6 +36,65 @@ TEST(CommandLine, HelpNamesTheCommands) {
     EXPECT_THAT(outcome.output, HasSubstr(command));
   EXPECT_NE(RunProgram("").exit_code, 0);
   EXPECT_NE(RunProgram("no-such-command").exit_code, 0);
+  const Outcome version = RunProgram("--version");
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_THAT(version.output, AllOf(HasSubstr("msf-slam "), HasSubstr(", commit ")));
+}
+
+TEST(CommandLine, HelpShowsNumbersAsAUserWritesThem) {
+  for (const char* command : {"run", "simulate", "bench", "bench compare", "evaluate"}) {
+    const Outcome help = RunProgram(std::string(command) + " --help");
+    EXPECT_EQ(help.exit_code, 0);
+    for (const char* noise : {"999999999999", "000000000000", "e+308"})
+      EXPECT_THAT(help.output, Not(HasSubstr(noise))) << command;
+  }
+}
+
+TEST(CommandLine, NumbersOutOfRangeAreRefusedByTheNameOfTheirOption) {
+  for (const auto& [arguments, option, number] :
+       {std::tuple("run data", "--seed", "-1"),
+        {"run data", "--seed", "18446744073709551616"},
+        {"run data", "--max-frames", "-3"},
+        {"simulate xyz --out data", "--seed", "-1"},
+        {"simulate xyz --out data", "--frames", "0"},
+        {"train-vocabulary data --out file", "--seed", "-1"},
+        {"detector evaluate --data data", "--limit", "-1"},
+        {"detector evaluate --data data", "--false-per-image", "-1"},
+        {"detector evaluate --data data", "--false-per-image", "nan"},
+        {"detector quantize model --images data --out file", "--count", "0"},
+        {"detector quantize model --images data --out file", "--count", "-3"},
+        {"detector quantize model --images data --out file", "--higher-share", "nan"},
+        {"detector time", "--threads", "1000000"},
+        {"detector info model", "--width", "33"},
+        {"bench compare a b", "--tolerance", "nan"},
+        {"bench simulated", "--time-limit", "-5"}}) {
+    const Outcome outcome = RunProgram(std::string(arguments) + " " + option + " " + number);
+    EXPECT_NE(outcome.exit_code, 0) << outcome.output;
+    EXPECT_THAT(outcome.output, AllOf(HasSubstr(std::string(option) + ": "), HasSubstr(number),
+                                      Not(HasSubstr("internal error"))));
+    EXPECT_LT(outcome.output.size(), 300u) << outcome.output;
+  }
+  for (const char* size : {"4294967712x320", "416x-320", "416", "416x320x", "0x0", "16x16"})
+    ExpectSentence(RunProgram(std::string("detector time --size ") + size), "32 to 4096 pixels");
+}
+
+TEST(CommandLine, WhereNothingCanBeWrittenIsFoundBeforeTheWork) {
+  const TestFolder folder;
+  folder.Write("file", "");
+  const std::string path = folder.path().string() + "/";
+  // What would be worked on does not exist, so the work does not get far.
+  for (const std::string& command :
+       {"detector evaluate --data none --json " + path + "no/e.json",
+        "detector evaluate --data none --plots " + path + "file/plots",
+        "detector evaluate --data none --overlay " + path + "file",
+        "detector quantize none --images none --out " + path + "no/q.onnx",
+        "detector time --model none --json " + path + "no/t.json",
+        "train-vocabulary none --out " + path + "no/v.msfvoc",
+        "evaluate none none --json " + path + "no/e.json",
+        "evaluate none none --plots " + path + "file/plots"}) {
+    ExpectSentence(RunProgram(command), "cannot be written: ");
+  }
+  ExpectSentence(RunProgram("evaluate none none --json " + path), "it is a folder; name a file");
 }
 
 TEST(CommandLine, EvaluatePrintsAndWrites) {
@@ -65,6 +125,10 @@ TEST(CommandLine, EvaluateExplainsMistakes) {
   ASSERT_TRUE(WriteTrajectory(folder / "truth.txt", Spiral()).ok());
   folder.Write("nan.txt", "1 0 0 0 0 0 0 1\n2 nan 0 0 0 0 0 1\n");
   folder.Write("late.txt", "1000 0 0 0 0 0 0 1\n");
+  Trajectory far = Spiral();
+  for (StampedPose& pose : far)
+    pose.T_wc = Rigid3d(pose.T_wc.rotation(), Eigen::Vector3d(1e200 * pose.T_wc.translation()));
+  ASSERT_TRUE(WriteTrajectory(folder / "far.txt", far).ok());
   const std::string path = folder.path().string() + "/";
   const std::string truth = path + "truth.txt ";
   ExpectSentence(RunProgram("evaluate " + truth + path + "absent.txt"),
@@ -75,6 +139,8 @@ TEST(CommandLine, EvaluateExplainsMistakes) {
                  "rgb.txt and depth.txt");
   ExpectSentence(RunProgram("evaluate " + truth + truth + "--json " + path + "no/e.json"),
                  "no/e.json");
+  ExpectSentence(RunProgram("evaluate " + truth + path + "far.txt --plots " + path + "plots"),
+                 "far: the errors are no finite numbers");
   EXPECT_NE(RunProgram("evaluate " + truth).exit_code, 0);
   EXPECT_NE(RunProgram("evaluate " + truth + truth + "--frames 5 --dataset " + path).exit_code, 0);
 }
@@ -124,6 +190,13 @@ TEST(CommandLine, WhatMovesIsShownLabelledAndScored) {
   EXPECT_FALSE(std::filesystem::exists(folder / "out/labels.csv")) << "of an earlier run";
   ExpectSentence(RunProgram(run + "--dynamic off --labels"),
                  "with --dynamic off nothing is looked for");
+  for (const char* option :
+       {"dynamic.mask.grow_px=1001", "dynamic.background.num_views=101",
+        "dynamic.planes.hypotheses=10001", "dynamic.flow.levels=9", "dynamic.flow.window_px=103"}) {
+    const std::string key = std::string(option).substr(0, std::string(option).find('='));
+    ExpectSentence(RunProgram(run + "--set " + option), key.substr(key.find('.') + 1));
+  }
+  ExpectSentence(RunProgram(run + "--config " + path + "data"), "data: is a folder");
   ExpectSentence(RunProgram("evaluate --masks " + path + "data"), "--labels");
   ExpectSentence(RunProgram("evaluate"), "name the true trajectory");
 }

@@ -12,6 +12,7 @@
 
 #include "bench/child_process.h"
 #include "bench/task_run.h"
+#include "evaluation/json_text.h"
 #include "util/atomic_file.h"
 
 namespace msf {
@@ -193,7 +194,7 @@ Status WriteResults(const fs::path& out, const BenchResults& results) {
                                     {"flags", build.flags}}},
                                   {"missing", MissingToJson(results.plan)},
                                   {"tasks", std::move(tasks)}};
-  MSF_RETURN_IF_ERROR(WriteFileAtomically(out / "results.json", figures.dump(2) + "\n"));
+  MSF_RETURN_IF_ERROR(WriteFileAtomically(out / "results.json", JsonText(figures)));
   const Machine& machine = results.machine;
   const nlohmann::json timing = {{"format", 1},
                                  {"machine",
@@ -202,7 +203,7 @@ Status WriteResults(const fs::path& out, const BenchResults& results) {
                                    {"memory_gb", machine.memory_gb},
                                    {"system", machine.system}}},
                                  {"tasks", std::move(timings)}};
-  return WriteFileAtomically(out / "timing.json", timing.dump(2) + "\n");
+  return WriteFileAtomically(out / "timing.json", JsonText(timing));
 }
 
 std::string Describe(const TaskResult& result) {

@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "bench/repeats.h"
@@ -23,16 +24,18 @@ using Runs = std::map<std::pair<std::string, std::string>, std::vector<TaskResul
 
 StatusOr<Runs> ReadResults(const fs::path& file, bool with_times) {
   Runs runs;
+  const fs::path timing = file.parent_path() / "timing.json";
+  std::error_code ignored;
+  if (fs::is_directory(file, ignored))
+    return Status::Error(file.string() + ": is a folder; name the results.json in it");
   try {
     std::ifstream stream(file);
     if (!stream) return Status::Error(file.string() + ": there is no such file");
     nlohmann::json times;
     if (with_times) {
-      std::ifstream beside(file.parent_path() / "timing.json");
-      if (!beside) {
-        return Status::Error((file.parent_path() / "timing.json").string() +
-                             ": is not there, so times cannot be compared");
-      }
+      std::ifstream beside(timing);
+      if (!beside || fs::is_directory(timing, ignored))
+        return Status::Error(timing.string() + ": is not there, so times cannot be compared");
       times = nlohmann::json::parse(beside).at("tasks");
     }
     const nlohmann::json json = nlohmann::json::parse(stream);

@@ -241,9 +241,10 @@ std::vector<fs::path> RootsOfEnvironment() {
 
 std::string DescribeMissing(const MissingSequence& missing) {
   if (!missing.reason.empty()) return missing.name + ": " + missing.reason;
-  return fmt::format("{}: the folder '{}' is in no root; {}", missing.name, missing.folder,
-                     missing.address.empty() ? "its suite names no address to get it from"
-                                             : "get it from " + missing.address);
+  std::string where = "its suite names no address to get it from";
+  if (!missing.address.empty())
+    where = (missing.address.starts_with("http") ? "get it from " : "") + missing.address;
+  return fmt::format("{}: the folder '{}' is in no root; {}", missing.name, missing.folder, where);
 }
 
 nlohmann::json PlanToJson(const Plan& plan) {

@@ -35,6 +35,8 @@ TEST(Plan, NamesWhatIsMissing) {
   EXPECT_THAT(DescribeMissing(plan.missing[0]),
               testing::AllOf(HasSubstr("recorded"), HasSubstr("'not_here'"),
                              HasSubstr("https://example.org/not_here.tgz")));
+  EXPECT_THAT(DescribeMissing({"s", "s", "not public", ""}), testing::EndsWith("; not public"));
+  EXPECT_THAT(DescribeMissing({"s", "s", "", ""}), HasSubstr("no address"));
   const TestFolder root;
   std::filesystem::create_directories(root / "not_here");
   EXPECT_TRUE(MakePlan(TestSuite(), {{root.path()}, "seq", "build", 0}).missing.empty());

@@ -44,6 +44,7 @@ TEST(TaskResult, TakesTheFiguresOfARun) {
   EXPECT_THAT(AddRunReport(folder.Write("bad.json", "{}"), result).message(),
               HasSubstr("is no report"));
   EXPECT_THAT(AddRunReport(folder / "absent.json", result).message(), HasSubstr("left no report"));
+  EXPECT_THAT(AddRunReport(folder.path(), result).message(), HasSubstr("left no report"));
 }
 
 TEST(TaskResult, SurvivesItsFile) {
@@ -58,6 +59,7 @@ TEST(TaskResult, SurvivesItsFile) {
   EXPECT_EQ(ResultToJson(*read), ResultToJson(result));
   EXPECT_EQ(TimingToJson(read->timing), TimingToJson(result.timing));
   EXPECT_FALSE(ReadTaskResult(folder / "absent.json").has_value());
+  EXPECT_FALSE(ReadTaskResult(folder.path()).has_value());
   EXPECT_FALSE(ReadTaskResult(folder.Write("cut.json", "{\"id\": ")).has_value());
 }
 
@@ -134,6 +136,8 @@ TEST_F(ComparisonTest, WhatIsGoneIsARegression) {
   std::erase_if(less.results, [](const TaskResult& r) { return r.sequence == "calm"; });
   EXPECT_EQ(CompareResults(before_, Write("less", less), {})->NumRegressions(), 2u);
   EXPECT_EQ(CompareResults(folder_ / "less/results.json", before_, {})->NumRegressions(), 0u);
+  EXPECT_THAT(CompareResults(before_, folder_.path(), {}).message(),
+              AllOf(HasSubstr(folder_.path().string()), HasSubstr("is a folder")));
   EXPECT_THAT(CompareResults(before_, folder_ / "absent.json", {}).message(),
               HasSubstr("no such file"));
   EXPECT_THAT(CompareResults(before_, folder_.Write("x.json", "{}"), {}).message(),

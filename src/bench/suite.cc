@@ -64,7 +64,7 @@ Status CheckVariant(const Suite& suite, const SuiteVariant& variant) {
   if (!variant.mode.empty()) {
     if (const Status mode = CheckMode(variant.mode); !mode.ok()) return problem(mode.message());
   }
-  if (variant.repeats < 0 || variant.time_limit_s < 0 || variant.threshold_px < 0)
+  if (variant.repeats < 0 || !(variant.time_limit_s >= 0) || !(variant.threshold_px >= 0))
     return problem("repeats, time_limit_s and threshold_px cannot be negative");
   if (variant.threshold_px > 0 && variant.dynamic != "paper" && variant.dynamic != "full")
     return problem("threshold_px belongs to dynamic: paper or full");
@@ -138,7 +138,7 @@ const SuiteVariant* Suite::FindVariant(const std::string& variant) const {
 Status Suite::Check() const {
   MSF_RETURN_IF_ERROR(CheckMode(mode));
   if (repeats < 1) return Status::Error("repeats must be at least 1");
-  if (time_limit_s <= 0) return Status::Error("time_limit_s must be positive");
+  if (!(time_limit_s > 0)) return Status::Error("time_limit_s must be positive");
   if (max_frames < 0) return Status::Error("max_frames cannot be negative");
   if (detectors.empty() && (sequences.empty() || variants.empty()))
     return Status::Error("a suite needs sequences and variants, or detectors");

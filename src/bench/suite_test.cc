@@ -1,7 +1,10 @@
 #include "bench/suite.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "bench/test_suite.h"
 #include "io/test_folder.h"
@@ -59,6 +62,11 @@ TEST(Suite, MistakesAreSentences) {
   EXPECT_THAT(message("{}"), HasSubstr("needs sequences and variants"));
   EXPECT_THAT(message(std::string(kSmall) + "mode: fast\n"), HasSubstr("'fast' is no mode"));
   EXPECT_THAT(message(std::string(kSmall) + "repeats: 0\n"), HasSubstr("repeats"));
+  for (const char* limit : {"0", "-5", ".nan", ".inf"}) {
+    EXPECT_THAT(message(kSmall + fmt::format("time_limit_s: {}\n", limit)),
+                HasSubstr("time_limit_s"))
+        << limit;
+  }
   EXPECT_THAT(message("sequences: [{name: a/b, scenario: xyz}]\nvariants: [{name: v}]\n"),
               HasSubstr("'a/b' is no name"));
   EXPECT_THAT(message("sequences: [{name: s}]\nvariants: [{name: v}]\n"),
@@ -72,6 +80,15 @@ TEST(Suite, MistakesAreSentences) {
   EXPECT_THAT(LoadSuite("no_such_suite").message(),
               testing::AllOf(HasSubstr("no suite 'no_such_suite'"), HasSubstr("tum_dynamic")));
   EXPECT_THAT(LoadSuite("no/such.yaml").message(), HasSubstr("there is no such file"));
+}
+
+TEST(Suite, ALimitIsANumber) {
+  Suite suite = TestSuite();
+  suite.time_limit_s = std::nan("");
+  EXPECT_THAT(suite.Check().message(), HasSubstr("time_limit_s must be positive"));
+  suite = TestSuite();
+  suite.variants[0].time_limit_s = std::nan("");
+  EXPECT_THAT(suite.Check().message(), HasSubstr("variant 'off'"));
 }
 
 TEST(Suite, KeepsWhatIsWanted) {

@@ -2,7 +2,9 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
+#include "evaluation/json_text.h"
 #include "util/atomic_file.h"
 
 namespace msf {
@@ -89,9 +91,11 @@ TaskResult EmptyResult(const Task& task) {
 }
 
 Status AddRunReport(const std::filesystem::path& report_file, TaskResult& result) {
+  std::error_code ignored;
   try {
     std::ifstream stream(report_file);
-    if (!stream) return Status::Error(report_file.string() + ": the run left no report");
+    if (!stream || std::filesystem::is_directory(report_file, ignored))
+      return Status::Error(report_file.string() + ": the run left no report");
     const Json report = Json::parse(stream);
     AddFigures(report, result);
     AddTiming(report, result.timing);
@@ -180,12 +184,13 @@ TaskTiming TimingFromJson(const Json& json) {
 Status WriteTaskResult(const std::filesystem::path& file, const TaskResult& result) {
   Json json = ResultToJson(result);
   json["timing"] = TimingToJson(result.timing);
-  return WriteFileAtomically(file, json.dump(2) + "\n");
+  return WriteFileAtomically(file, JsonText(json));
 }
 
 std::optional<TaskResult> ReadTaskResult(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  if (!stream) return std::nullopt;
+  std::error_code ignored;
+  if (!stream || std::filesystem::is_directory(file, ignored)) return std::nullopt;
   try {
     const Json json = Json::parse(stream);
     TaskResult result = ResultFromJson(json);

@@ -29,6 +29,23 @@ double TickStep(const Range& range, int count) {
   return 10 * power;
 }
 
+// The range, widened where it is too short for numbers of its size; [0, 1] when it has no length
+// that is a number.
+Range Drawable(const Range& range) {
+  constexpr double kLeastShare = 1e-9, kLeast = 1e-9;
+  if (!std::isfinite(range.length())) return {0, 1};
+  const double size = std::max(std::abs(range.min), std::abs(range.max));
+  const double missing = std::max(kLeastShare * size, kLeast) - range.length();
+  if (missing <= 0) return range;
+  return {range.min - missing / 2, range.max + missing / 2};
+}
+
+ChartSpec Drawable(ChartSpec spec) {
+  spec.x = Drawable(spec.x);
+  spec.y = Drawable(spec.y);
+  return spec;
+}
+
 int TickCount(double pixels, double pixels_per_tick) {
   return std::clamp(static_cast<int>(pixels / pixels_per_tick), 2, 10);
 }
@@ -71,7 +88,7 @@ ChartSpec WithEqualUnits(ChartSpec spec) {
 }
 
 Chart::Chart(SvgCanvas& canvas, ChartSpec spec)
-    : canvas_(canvas), spec_(std::move(spec)), clip_(canvas.DefineClip(spec_.area)) {
+    : canvas_(canvas), spec_(Drawable(std::move(spec))), clip_(canvas.DefineClip(spec_.area)) {
   DrawAxes();
 }
 

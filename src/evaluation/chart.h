@@ -39,7 +39,8 @@ ChartSpec WithEqualUnits(ChartSpec spec);
 
 class Chart {
  public:
-  // Draws title, grid, ticks and labels. `canvas` must outlive the chart.
+  // Draws title, grid, ticks and labels. `canvas` must outlive the chart. A range that is too short
+  // for numbers of its size is widened; one whose length is no finite number becomes [0, 1].
   Chart(SvgCanvas& canvas, ChartSpec spec);
 
   Eigen::Vector2d ToPixels(double x, double y) const;

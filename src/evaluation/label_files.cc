@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 #include <optional>
 #include <ostream>
 #include <string_view>
 
+#include "io/presence.h"
 #include "io/text_rows.h"
 #include "util/atomic_file.h"
 
@@ -25,12 +27,44 @@ std::optional<PointReason> ReasonOf(std::string_view name) {
   return std::nullopt;
 }
 
+// What numbers can be. An image is no larger; boxes may reach beyond it.
+struct Range {
+  double least, most;
+};
+constexpr Range kPixels = {-1, 16384};
+constexpr Range kBoxSides = {-1e6, 1e6};
+constexpr Range kFrames = {0, 1e15};
+constexpr Range kIds = {std::numeric_limits<int>::min(), std::numeric_limits<int>::max()};
+constexpr Range kShares = {0, 1};
+constexpr Range kTimes_s = {-1e15, 1e15};
+
+// The place of the comma that ends the first cell of `line`; a cell in quotes may hold commas.
+size_t EndOfCell(std::string_view line) {
+  bool in_quotes = false;
+  for (size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') in_quotes = !in_quotes;
+    if (line[i] == ',' && !in_quotes) return i;
+  }
+  return std::string_view::npos;
+}
+
+// The inverse of QuotedForCsv; what has no quotes stays as it is.
+std::string Unquoted(std::string_view cell) {
+  if (cell.size() < 2 || !cell.starts_with('"') || !cell.ends_with('"')) return std::string(cell);
+  std::string text;
+  for (size_t i = 1; i + 1 < cell.size(); ++i) {
+    text += cell[i];
+    if (cell[i] == '"') ++i;  // the first of two
+  }
+  return text;
+}
+
 // The cells of one row, and the numbers among them.
 class Row {
  public:
   explicit Row(std::string_view line) {
     while (true) {
-      const size_t comma = line.find(',');
+      const size_t comma = EndOfCell(line);
       cells_.push_back(line.substr(0, comma));
       if (comma == std::string_view::npos) return;
       line.remove_prefix(comma + 1);
@@ -38,12 +72,14 @@ class Row {
   }
   size_t size() const { return cells_.size(); }
   std::string_view operator[](size_t i) const { return cells_[i]; }
-  // Not a number: 0, and ok() is false from then on.
-  double Number(size_t i) {
+  // Not a number in the range: its least one, and ok() is false from then on.
+  double Number(size_t i, Range range) {
     const std::optional<double> number = ParseFiniteNumber(cells_[i]);
-    ok_ = ok_ && number;
-    return number.value_or(0);
+    if (number && *number >= range.least && *number <= range.most) return *number;
+    ok_ = false;
+    return range.least;
   }
+  float Float(size_t i, Range range) { return static_cast<float>(Number(i, range)); }
   bool ok() const { return ok_; }
 
  private:
@@ -81,29 +117,35 @@ LabelledFrame& FrameOf(std::vector<LabelledFrame>& frames, int64_t id, double ti
 bool TakePoint(Row& row, std::vector<LabelledFrame>& frames) {
   const std::optional<PointReason> reason = ReasonOf(row[4]);
   if (!reason) return false;
-  const LabelledPoint point = {static_cast<float>(row.Number(2)), static_cast<float>(row.Number(3)),
-                               static_cast<float>(row.Number(5)), *reason};
-  FrameOf(frames, static_cast<int64_t>(row.Number(0)), row.Number(1)).points.push_back(point);
+  const LabelledPoint point = {row.Float(2, kPixels), row.Float(3, kPixels), row.Float(5, kShares),
+                               *reason};
+  FrameOf(frames, static_cast<int64_t>(row.Number(0, kFrames)), row.Number(1, kTimes_s))
+      .points.push_back(point);
   return row.ok();
 }
 
 bool TakeObject(Row& row, std::vector<LabelledFrame>& frames) {
   LabelledObject object;
-  object.id = static_cast<int>(row.Number(2));
-  object.name = row[3];
+  object.id = static_cast<int>(row.Number(2, kIds));
+  object.name = Unquoted(row[3]);
   object.kind = row[4];
   object.state = row[5];
-  object.removed = row.Number(6) != 0;
-  object.bridged = row.Number(7) != 0;
-  object.score = static_cast<float>(row.Number(8));
-  object.box = {static_cast<float>(row.Number(9)), static_cast<float>(row.Number(10)),
-                static_cast<float>(row.Number(11)), static_cast<float>(row.Number(12))};
-  const auto id = static_cast<int64_t>(row.Number(0));
+  object.removed = row.Number(6, kShares) != 0;
+  object.bridged = row.Number(7, kShares) != 0;
+  object.score = row.Float(8, kShares);
+  object.box = {row.Float(9, kBoxSides), row.Float(10, kBoxSides), row.Float(11, kBoxSides),
+                row.Float(12, kBoxSides)};
+  const auto id = static_cast<int64_t>(row.Number(0, kFrames));
   const auto frame =
       std::lower_bound(frames.begin(), frames.end(), id,
                        [](const LabelledFrame& f, int64_t wanted) { return f.frame < wanted; });
   if (frame != frames.end() && frame->frame == id) frame->objects.push_back(std::move(object));
   return row.ok();
+}
+
+// Quotes are for names that need them; most readers of a CSV do without.
+std::string NameCell(const std::string& name) {
+  return name.find_first_of(",\"\n\r") == std::string::npos ? name : QuotedForCsv(name);
 }
 
 }  // namespace
@@ -145,7 +187,7 @@ Status WriteObjects(const std::filesystem::path& file, const std::vector<Labelle
     for (const LabelledFrame& frame : frames) {
       for (const LabelledObject& object : frame.objects) {
         out << fmt::format("{},{:.6f},{},{},{},{},{:d},{:d},{:.3f},{:.1f},{:.1f},{:.1f},{:.1f}\n",
-                           frame.frame, frame.time_s, object.id, object.name, object.kind,
+                           frame.frame, frame.time_s, object.id, NameCell(object.name), object.kind,
                            object.state, object.removed, object.bridged, object.score,
                            object.box.x0, object.box.y0, object.box.x1, object.box.y1);
       }
@@ -158,10 +200,19 @@ StatusOr<std::vector<LabelledFrame>> ReadLabels(const std::filesystem::path& fil
   MSF_RETURN_IF_ERROR(
       ReadCsv(file, kLabelsHeader, [&](Row& row) { return TakePoint(row, frames); }));
   const std::filesystem::path objects = file.parent_path() / "objects.csv";
-  if (std::filesystem::exists(objects))
+  if (IsThere(objects))
     MSF_RETURN_IF_ERROR(
         ReadCsv(objects, kObjectsHeader, [&](Row& row) { return TakeObject(row, frames); }));
   return frames;
+}
+
+std::string QuotedForCsv(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return quoted + '"';
 }
 
 }  // namespace msf

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dynamic/dynamic_filter.h"
@@ -42,7 +43,11 @@ Status WriteLabels(const std::filesystem::path& file, const std::vector<Labelled
 // frame,time_s,id,class,kind,state,removed,bridged,score,x0,y0,x1,y1: one row per object.
 Status WriteObjects(const std::filesystem::path& file, const std::vector<LabelledFrame>& frames);
 
-// Reads a labels.csv and the objects.csv beside it, if there is one. Errors name file and line.
+// Reads a labels.csv and the objects.csv beside it, if there is one. Errors name file and line: not
+// the columns above, or a value that none of these can have (a point outside of any image).
 StatusOr<std::vector<LabelledFrame>> ReadLabels(const std::filesystem::path& file);
+
+// A text as a cell of a CSV row: in quotes, with inner quotes doubled, and on one line.
+std::string QuotedForCsv(std::string_view text);
 
 }  // namespace msf

@@ -1,13 +1,17 @@
 #include "evaluation/mask_score.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <system_error>
 
 #include "io/image_reader.h"
+#include "io/presence.h"
 #include "io/text_rows.h"
 
 namespace msf {
@@ -72,14 +76,17 @@ void CountActors(const LabelledFrame& frame, const cv::Mat& mask,
 }
 
 StatusOr<std::map<double, fs::path>> ListMasks(const fs::path& folder) {
-  const fs::path inner = fs::is_directory(folder / "mask") ? folder / "mask" : folder;
-  if (!fs::is_directory(inner))
+  const fs::path inner = IsFolder(folder / "mask") ? folder / "mask" : folder;
+  if (!IsFolder(inner))
     return Status::Error(folder.string() + ": there is no such folder of masks");
   std::map<double, fs::path> masks;
-  for (const auto& entry : fs::directory_iterator(inner)) {
-    const std::optional<double> time_s = ParseFiniteNumber(entry.path().stem().string());
-    if (entry.path().extension() == ".png" && time_s) masks[*time_s] = entry.path();
+  std::error_code error;
+  for (fs::directory_iterator entry(inner, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::optional<double> time_s = ParseFiniteNumber(entry->path().stem().string());
+    if (entry->path().extension() == ".png" && time_s) masks[*time_s] = entry->path();
   }
+  if (error) return Status::Error(inner.string() + ": cannot be read: " + error.message());
   if (masks.empty()) return Status::Error(inner.string() + ": holds no masks (TIME.png)");
   return masks;
 }
@@ -95,18 +102,25 @@ StatusOr<cv::Mat> ReadMask(const fs::path& file, ImageReader& reader) {
   return mask;
 }
 
-// Both forms there are, told apart by the number of columns:
+// Both forms there are, told apart by the number of columns of the first line:
 //   timestamp actor class visible_px x0 y0 x1 y1
 //   timestamp actor clip sprite_frame x0 y0 x1 y1 visible_px ... (people only; actor -1 = nobody)
 StatusOr<std::map<double, std::vector<TrueActor>>> ReadActors(const fs::path& file) {
   std::map<double, std::vector<TrueActor>> actors;
   const StatusOr<std::vector<TextRow>> rows = ReadTextRows(file);
   if (!rows.ok()) return rows.status();
+  const size_t num_columns = rows->empty() ? 0 : rows->front().columns.size();
+  const bool people_only = num_columns > 8;
   for (const auto& [line, columns] : *rows) {
     if (columns.size() < 8) return RowError(file, line, "has fewer than 8 columns");
-    const bool people_only = columns.size() > 8;
-    std::array<double, 6> numbers{};  // time, x0, y0, x1, y1, visible_px
-    const std::array<size_t, 6> places = {0, 4, 5, 6, 7, people_only ? size_t{8} : size_t{3}};
+    if (columns.size() != num_columns) {
+      return RowError(file, line,
+                      fmt::format("has {} columns, the first line {}; names must hold no blanks",
+                                  columns.size(), num_columns));
+    }
+    // time, x0, y0, x1, y1, visible_px; the last one is looked at only: no part of a name.
+    std::array<double, 7> numbers{};
+    const std::array<size_t, 7> places = {0, 4, 5, 6, 7, people_only ? size_t{8} : size_t{3}, 3};
     for (size_t i = 0; i < places.size(); ++i) {
       const std::optional<double> number = ParseFiniteNumber(columns[places[i]]);
       if (!number) return RowError(file, line, "'" + columns[places[i]] + "' is no number");
@@ -121,10 +135,30 @@ StatusOr<std::map<double, std::vector<TrueActor>>> ReadActors(const fs::path& fi
   return actors;
 }
 
+// Pixels have their centres at whole numbers, so an image begins half a pixel before the first.
+bool IsInside(const LabelledPoint& point, const cv::Mat& mask) {
+  return point.x_px >= -0.5f && point.y_px >= -0.5f &&
+         point.x_px <= static_cast<float>(mask.cols) - 0.5f &&
+         point.y_px <= static_cast<float>(mask.rows) - 0.5f;
+}
+
+Status CheckSize(const fs::path& labels_file, const LabelledFrame& frame, const fs::path& mask_file,
+                 const cv::Mat& mask) {
+  for (const LabelledPoint& point : frame.points) {
+    if (IsInside(point, mask)) continue;
+    return Status::Error(fmt::format(
+        "{}: the point ({}, {}) of frame {} lies outside the mask {} of {}x{} pixels; give the "
+        "masks that belong to the images of this run",
+        labels_file.string(), point.x_px, point.y_px, frame.frame, mask_file.string(), mask.cols,
+        mask.rows));
+  }
+  return Status::Ok();
+}
+
 StatusOr<std::map<double, std::vector<TrueActor>>> FindActors(const fs::path& folder) {
   for (const fs::path& file :
        {folder / "actors.txt", folder.lexically_normal() / ".." / "actors.txt"}) {
-    if (fs::is_regular_file(file)) return ReadActors(file);
+    if (IsThere(file)) return ReadActors(file);
   }
   return std::map<double, std::vector<TrueActor>>();
 }
@@ -196,6 +230,7 @@ StatusOr<MaskScore> ScoreAgainstMasks(const std::string& name, const fs::path& l
     }
     const StatusOr<cv::Mat> mask = ReadMask(*file, reader);
     if (!mask.ok()) return mask.status();
+    MSF_RETURN_IF_ERROR(CheckSize(labels_file, frame, *file, *mask));
     const std::vector<TrueActor>* present = FindByTime(*actors, frame.time_s);
     AddToScore(frame, *mask, present != nullptr ? *present : std::vector<TrueActor>(), score);
   }

@@ -67,7 +67,7 @@ inline constexpr int kMaskBorder_px = 4;
 // Overlap of a true box and an object's box that makes them the same.
 inline constexpr float kSameObjectIou = 0.5f;
 
-// Adds one frame. `mask`: 8-bit, 0 = static.
+// Adds one frame. `mask`: 8-bit, 0 = static; of the size of the images.
 void AddToScore(const LabelledFrame& frame, const cv::Mat& mask,
                 const std::vector<TrueActor>& actors, MaskScore& score);
 

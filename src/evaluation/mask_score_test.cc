@@ -140,6 +140,22 @@ TEST_F(MaskFolder, ReadsActorsOfBothForms) {
   EXPECT_EQ(score->actors[0].detected, 1);
 }
 
+TEST_F(MaskFolder, MasksOfAnotherSizeAreNamed) {
+  folder_.Write("mask/5.000000.png", EncodePng(cv::Mat::zeros(30, 40, CV_8UC1)));
+  EXPECT_THAT(Score("mask").message(),
+              AllOf(HasSubstr("labels.csv"), HasSubstr("5.000000.png of 40x30 pixels")));
+}
+
+TEST_F(MaskFolder, ActorsOfTwoFormsInOneFileAreNamed) {
+  folder_.Write("actors.txt",
+                "5.000000 1 person 2400 0 0 39 59\n5.000000 2 dining table 2400 0 0 39 59\n");
+  EXPECT_THAT(Score("mask").message(), HasSubstr("actors.txt:2: has 9 columns"));
+  folder_.Write("actors.txt", "5.000000 2 dining table 2400 0 0 39 59\n");
+  EXPECT_THAT(Score("mask").message(), HasSubstr("actors.txt:1: 'table' is no number"));
+  folder_.Write("actors.txt", "5.000000 1 person 2400 0 0 39\n");
+  EXPECT_THAT(Score("mask").message(), HasSubstr("actors.txt:1: has fewer than 8 columns"));
+}
+
 TEST_F(MaskFolder, MistakesAreNamed) {
   EXPECT_THAT(Score("nowhere").message(), HasSubstr("no such folder"));
   std::filesystem::rename(folder_ / "mask/5.000000.png", folder_ / "mask/9.000000.png");

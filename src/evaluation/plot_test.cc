@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,23 @@ TEST(Chart, MapsRangesToItsArea) {
   EXPECT_EQ(chart.ToPixels(5, 1), Eigen::Vector2d(100, 10));
 }
 
+TEST(Chart, HasARangeWhateverItIsGiven) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  for (const Range& range : {Range{5, 5},
+                             {1e17, 1e17},
+                             {1e17, 1e17 + 64},
+                             {-1e308, 1e308},
+                             {0, 1e-320},
+                             {0, kInf},
+                             Range::Empty(),
+                             {0, std::nan("")}}) {
+    SvgCanvas canvas(200, 100);
+    const Chart chart(canvas, {{50, 10, 100, 80}, "", "", "", range, range});
+    EXPECT_TRUE(IsBalanced(canvas.ToString()));
+    EXPECT_THAT(canvas.ToString(), Not(HasSubstr("nan"))) << range.min << " " << range.max;
+  }
+}
+
 TEST(Chart, EqualUnitsGrowTheSmallerRange) {
   const ChartSpec spec = WithEqualUnits({{0, 0, 200, 100}, "", "", "", {0, 2}, {0, 3}});
   EXPECT_DOUBLE_EQ(spec.x.length() / 200, spec.y.length() / 100);
@@ -116,6 +134,20 @@ TEST(Plots, ShowEveryEstimate) {
     EXPECT_THAT(svg, Not(HasSubstr("nan")));
   }
   EXPECT_THAT(PlotTrajectories(truth, evaluations), HasSubstr("coverage 100.0 %"));
+}
+
+TEST(Plots, ExtremeStampsAndPositionsAreDrawn) {
+  for (const double stamp_s : {1e-300, 1e17, 1e290}) {
+    Trajectory truth;
+    for (int i = 0; i < 4; ++i) {
+      truth.push_back({stamp_s * (1 + 0.1 * i),
+                       Rigid3d(Eigen::Quaterniond::Identity(), Eigen::Vector3d(1e17, i, 0))});
+    }
+    const StatusOr<Evaluation> evaluation = EvaluateTrajectory("e", truth, truth);
+    ASSERT_TRUE(evaluation.ok()) << evaluation.message();
+    EXPECT_TRUE(IsBalanced(PlotTrajectories(truth, {&*evaluation, 1})));
+    EXPECT_TRUE(IsBalanced(PlotErrors({&*evaluation, 1})));
+  }
 }
 
 TEST(Plots, BreakTheLineWhereTheEstimateIsSilent) {

@@ -5,27 +5,22 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <nlohmann/json.hpp>
+#include <exception>
+#include <functional>
 #include <set>
 #include <span>
 #include <system_error>
 
 #include "evaluation/dynamics_summary.h"
+#include "evaluation/json_text.h"
+#include "evaluation/label_files.h"
 #include "evaluation/trajectory_plot.h"
 #include "util/atomic_file.h"
 
 namespace msf {
 namespace {
 
-// As CSV wants it: quoted, with inner quotes doubled.
-std::string Quoted(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c == '\n' ? ' ' : c;
-  }
-  return quoted + '"';
-}
+namespace fs = std::filesystem;
 
 std::string CsvRow(size_t index, const FrameRecord& frame, const std::set<std::string>& stages,
                    bool with_dynamics) {
@@ -37,7 +32,16 @@ std::string CsvRow(size_t index, const FrameRecord& frame, const std::set<std::s
     const auto ms = frame.timings_ms.find(stage);
     row += ms == frame.timings_ms.end() ? "," : fmt::format(",{:.3f}", ms->second);
   }
-  return row + "," + (frame.note.empty() ? "" : Quoted(frame.note)) + "\n";
+  return row + "," + (frame.note.empty() ? "" : QuotedForCsv(frame.note)) + "\n";
+}
+
+// A file that cannot even be composed must not cost a run the others.
+Status TryToWrite(const fs::path& file, const std::function<Status(const fs::path&)>& to) {
+  try {
+    return to(file);
+  } catch (const std::exception& error) {
+    return Status::Error(file.string() + ": cannot be written: " + error.what());
+  }
 }
 
 }  // namespace
@@ -58,10 +62,10 @@ std::string FormatFramesCsv(const std::vector<FrameRecord>& frames) {
   return csv;
 }
 
-Status PrepareRunFolder(const std::filesystem::path& folder) {
+Status PrepareRunFolder(const fs::path& folder) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!error && !std::filesystem::is_directory(folder, error))
+  fs::create_directories(folder, error);
+  if (!error && !fs::is_directory(folder, error))
     error = std::make_error_code(std::errc::not_a_directory);
   if (!error && access(folder.c_str(), W_OK | X_OK) != 0) error = {errno, std::generic_category()};
   if (!error) return Status::Ok();
@@ -70,28 +74,33 @@ Status PrepareRunFolder(const std::filesystem::path& folder) {
                   folder.string(), error.message()));
 }
 
-Status WriteRunFolder(const std::filesystem::path& folder, const RunResults& results,
-                      const RunReport& report) {
+Status WriteRunFolder(const fs::path& folder, const RunResults& results, const RunReport& report) {
   MSF_RETURN_IF_ERROR(PrepareRunFolder(folder));
   std::string problems;
-  const auto note = [&problems](const Status& status) {
+  const auto write = [&](const char* name, const std::function<Status(const fs::path&)>& to) {
+    const Status status = TryToWrite(folder / name, to);
     if (!status.ok()) problems += (problems.empty() ? "" : "\n") + status.message();
   };
-  note(WriteTrajectory(folder / "trajectory.txt", FrameTrajectory(results)));
-  note(WriteTrajectory(folder / "keyframes.txt", results.keyframes));
-  note(WriteFileAtomically(folder / "frames.csv", FormatFramesCsv(results.frames)));
-  note(WritePly(folder / "map.ply", results.points));
-  note(WriteFileAtomically(folder / "config.yaml", results.config_yaml));
-  note(WriteFileAtomically(folder / "report.json", RunReportToJson(report).dump(2) + "\n"));
+  const auto write_text = [&](const char* name, const std::function<std::string()>& text) {
+    write(name, [&](const fs::path& file) { return WriteFileAtomically(file, text()); });
+  };
+  write("trajectory.txt",
+        [&](const fs::path& file) { return WriteTrajectory(file, FrameTrajectory(results)); });
+  write("keyframes.txt",
+        [&](const fs::path& file) { return WriteTrajectory(file, results.keyframes); });
+  write_text("frames.csv", [&] { return FormatFramesCsv(results.frames); });
+  write("map.ply", [&](const fs::path& file) { return WritePly(file, results.points); });
+  write_text("config.yaml", [&] { return results.config_yaml; });
+  write_text("camera.yaml", [&] { return results.camera_yaml; });
+  write_text("report.json", [&] { return JsonText(RunReportToJson(report)); });
   if (report.evaluation) {
     const std::span<const Evaluation> evaluation(&*report.evaluation, 1);
-    note(WriteFileAtomically(folder / "trajectory.svg",
-                             PlotTrajectories(*results.ground_truth, evaluation)));
-    note(WriteFileAtomically(folder / "error.svg", PlotErrors(evaluation)));
+    write_text("trajectory.svg",
+               [&] { return PlotTrajectories(*results.ground_truth, evaluation); });
+    write_text("error.svg", [&] { return PlotErrors(evaluation); });
   } else {
     std::error_code ignored;
-    for (const char* name : {"trajectory.svg", "error.svg"})
-      std::filesystem::remove(folder / name, ignored);
+    for (const char* name : {"trajectory.svg", "error.svg"}) fs::remove(folder / name, ignored);
   }
   return problems.empty() ? Status::Ok() : Status::Error(problems);
 }

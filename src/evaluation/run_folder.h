@@ -15,9 +15,9 @@ namespace msf {
 Status PrepareRunFolder(const std::filesystem::path& folder);
 
 // Makes the folder and writes trajectory.txt, keyframes.txt (TUM text), frames.csv, map.ply,
-// config.yaml, report.json and, when the run was evaluated, trajectory.svg and error.svg (those of
-// an earlier run go when it was not). Each file is complete or absent; when one cannot be written
-// the others still are, and the error names all that are missing.
+// config.yaml, camera.yaml, report.json and, when the run was evaluated, trajectory.svg and
+// error.svg (those of an earlier run go when it was not). Each file is complete or absent; when one
+// cannot be written the others still are, and the error names all that are missing.
 Status WriteRunFolder(const std::filesystem::path& folder, const RunResults& results,
                       const RunReport& report);
 

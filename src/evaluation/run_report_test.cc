@@ -111,6 +111,16 @@ TEST(RunReport, AnErrorThatDoesNotExistIsNotZero) {
   EXPECT_THAT(FormatRunReport(MakeRunReport(results)), HasSubstr("RPE 1 s      -, - RMSE"));
 }
 
+TEST(RunFolder, NamesNeedNotBeUtf8) {
+  const TestFolder folder;
+  RunResults results = TenFrames();
+  results.name = "d\xff";
+  const Status status = WriteRunFolder(folder.path(), results, MakeRunReport(results));
+  EXPECT_TRUE(status.ok()) << status.message();
+  const nlohmann::json json = nlohmann::json::parse(ReadWholeFile(folder / "report.json"));
+  EXPECT_EQ(json.at("name"), "d\xef\xbf\xbd") << "the sign for what is no letter";
+}
+
 TEST(RunFolder, HoldsEveryFile) {
   const TestFolder folder;
   const RunResults results = TenFrames();

@@ -42,8 +42,10 @@ struct RunResults {
   double time_to_first_pose_s = 0;  // from the start of the run
   ProcessUsage usage;
   bool interrupted = false;           // by the user; what is here is complete up to then
+  std::string failure;                // of a stage that ended it early; empty: none
   std::vector<std::string> warnings;  // what was survived
   std::string config_yaml;            // the resolved options
+  std::string camera_yaml;            // the camera
   std::optional<Trajectory> ground_truth;
   std::string ground_truth_problem;  // why there is none although there is a file
 };

@@ -24,9 +24,10 @@ Eigen::Vector2f ToFull(const cv::Point2f& px, int shrink) {
 Status FlowOptions::Check() const {
   if (shrink != 1 && shrink != 2 && shrink != 4)
     return Status::Error("flow.shrink must be 1, 2 or 4");
-  if (window_px < 3) return Status::Error("flow.window_px must be at least 3");
-  if (levels < 0 || iterations < 1)
-    return Status::Error("flow: levels must not be negative, iterations at least 1");
+  if (window_px < 3 || window_px > 101)
+    return Status::Error("flow.window_px must be from 3 to 101");
+  if (levels < 0 || levels > 8) return Status::Error("flow.levels must be from 0 to 8");
+  if (iterations < 1) return Status::Error("flow.iterations must be at least 1");
   if (!(max_error > 0)) return Status::Error("flow.max_error must be positive");
   return Status::Ok();
 }

@@ -62,6 +62,13 @@ TEST(PointFlow, WhatLeftTheImageIsNotFound) {
   EXPECT_FALSE(FollowPoints(from, to, points, guesses, options)[0].found);
 }
 
+TEST(FlowOptions, WhatWouldTakeForeverIsRefused) {
+  EXPECT_TRUE((FlowOptions{.window_px = 101, .levels = 8}.Check().ok()));
+  EXPECT_FALSE(FlowOptions{.window_px = 102}.Check().ok());
+  EXPECT_FALSE(FlowOptions{.levels = 9}.Check().ok());
+  EXPECT_FALSE(FlowOptions{.levels = -1}.Check().ok());
+}
+
 TEST(PointFlow, NoImageBefore) {
   const FlowOptions options;
   const std::vector<Eigen::Vector2f> points = {{20, 200}};

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
+#include <algorithm>
+#include <array>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "io/png_encoder.h"
+#include "io/presence.h"
 #include "util/atomic_file.h"
 #include "util/options.h"
 
@@ -19,24 +21,49 @@ Status SystemError(const fs::path& path, const std::string& what, const std::err
   return Status::Error(fmt::format("{}: {}: {}", path.string(), what, error.message()));
 }
 
-// Whether `folder` may be replaced by a new data set.
+// What a data set consists of, besides the marker.
+constexpr std::array<std::string_view, 3> kImageFolders = {"rgb", "depth", "mask"};
+constexpr std::array<std::string_view, 7> kTextFiles = {
+    "rgb.txt",         "depth.txt",   "mask.txt",  "associations.txt",
+    "groundtruth.txt", "camera.yaml", "actors.txt"};
+
+// Whether what lies so deep in a data set's folder is a part of it.
+bool IsPart(const fs::directory_entry& entry, int depth, const std::string& marker) {
+  const auto is_among = [name = entry.path().filename().string()](const auto& names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  const fs::path kind = entry.path().extension();
+  if (IsFolder(entry.path())) return depth == 0 && is_among(kImageFolders);
+  if (kind == ".part") return true;  // a run that was killed had begun to write it
+  if (depth > 0) return kind == ".png";
+  return entry.path().filename() == marker || is_among(kTextFiles);
+}
+
+// Whether `folder` may be replaced by a new data set: with it goes all that it holds.
 Status CheckReplaceable(const fs::path& folder, const std::string& marker) {
   std::error_code error;
-  if (!fs::exists(folder, error)) return Status::Ok();
-  const bool is_folder = fs::is_directory(folder, error);
-  if (is_folder && (fs::is_empty(folder, error) || fs::exists(folder / marker, error)))
-    return Status::Ok();
-  return Status::Error(
-      fmt::format("{}: exists and was not made by this command (it holds no {}); choose another "
-                  "folder or remove it",
-                  folder.string(), marker));
+  if (!IsThere(folder)) return Status::Ok();
+  if (!IsFolder(folder) || !(fs::is_empty(folder, error) || IsThere(folder / marker))) {
+    return Status::Error(
+        fmt::format("{}: exists and was not made by this command (it holds no {}); choose another "
+                    "folder or remove it",
+                    folder.string(), marker));
+  }
+  for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (IsPart(*entry, entry.depth(), marker)) continue;
+    return Status::Error(
+        fmt::format("{}: is no part of the data set that would be replaced; move it away or choose "
+                    "another folder",
+                    entry->path().string()));
+  }
+  return error ? SystemError(folder, "cannot be read", error) : Status::Ok();
 }
 
 }  // namespace
 
 StatusOr<DatasetWriter> DatasetWriter::Create(const fs::path& folder, const std::string& marker) {
-  // A trailing slash would make ".part" a file inside the folder.
-  const fs::path target = folder.has_filename() ? folder : folder.parent_path();
+  const fs::path target = ResolvePath(folder);  // ".part" goes beside it, even of a link
   if (target.empty()) return Status::Error("the folder to write to has no name");
   MSF_RETURN_IF_ERROR(CheckReplaceable(target, marker));
   const fs::path part = target.string() + ".part";
@@ -48,12 +75,13 @@ StatusOr<DatasetWriter> DatasetWriter::Create(const fs::path& folder, const std:
     if (error) return SystemError(part / images, "cannot be created", error);
   }
   MSF_RETURN_IF_ERROR(WriteFileAtomically(part / marker, ""));
-  return DatasetWriter(target, part);
+  return DatasetWriter(target, part, marker);
 }
 
-DatasetWriter::DatasetWriter(fs::path folder, fs::path part)
+DatasetWriter::DatasetWriter(fs::path folder, fs::path part, std::string marker)
     : folder_(std::move(folder)),
       part_(std::move(part)),
+      marker_(std::move(marker)),
       rgb_list_("# color images\n# timestamp filename\n"),
       depth_list_("# depth images\n# timestamp filename\n"),
       associations_("# timestamp rgb timestamp depth\n") {}
@@ -61,6 +89,7 @@ DatasetWriter::DatasetWriter(fs::path folder, fs::path part)
 DatasetWriter::DatasetWriter(DatasetWriter&& other) noexcept
     : folder_(std::move(other.folder_)),
       part_(std::exchange(other.part_, {})),
+      marker_(std::move(other.marker_)),
       camera_yaml_(std::move(other.camera_yaml_)),
       rgb_list_(std::move(other.rgb_list_)),
       depth_list_(std::move(other.depth_list_)),
@@ -103,12 +132,15 @@ Status DatasetWriter::AddFile(const std::string& name, const std::string& text) 
 }
 
 Status DatasetWriter::Finish(const Trajectory& ground_truth) {
+  if (camera_yaml_.empty())
+    return Status::Error(folder_.string() + ": is left as it is, for there is no frame to write");
   MSF_RETURN_IF_ERROR(AddFile("rgb.txt", rgb_list_));
   MSF_RETURN_IF_ERROR(AddFile("depth.txt", depth_list_));
   MSF_RETURN_IF_ERROR(AddFile("associations.txt", associations_));
   MSF_RETURN_IF_ERROR(AddFile("camera.yaml", camera_yaml_));
   if (!mask_list_.empty()) MSF_RETURN_IF_ERROR(AddFile("mask.txt", mask_list_));
   MSF_RETURN_IF_ERROR(WriteTrajectory(part_ / "groundtruth.txt", ground_truth));
+  MSF_RETURN_IF_ERROR(CheckReplaceable(folder_, marker_));  // much may have happened meanwhile
   std::error_code error;
   fs::remove_all(folder_, error);
   if (error) return SystemError(folder_, "the old data set cannot be removed", error);

@@ -21,6 +21,8 @@ RgbdFrame MakeFrame(double time_s) {
   Camera camera = *Camera::Preset("simulated");
   camera.width = 64;
   camera.height = 48;
+  camera.cx = 31.5;
+  camera.cy = 23.5;
   frame.camera = std::make_shared<const Camera>(camera);
   frame.color = cv::Mat(48, 64, CV_8UC3);
   cv::randu(frame.color, 0, 255);
@@ -79,6 +81,51 @@ TEST(DatasetWriter, ReplacesItsOwnFoldersOnly) {
   }
   EXPECT_FALSE(fs::exists(own / "rgb" / "0.000000.png"));
   EXPECT_TRUE(fs::exists(own / "rgb" / "1.000000.png"));
+}
+
+TEST(DatasetWriter, WhatIsNoPartOfADatasetIsNotRemoved) {
+  const TestFolder folder;
+  const fs::path target = folder.path() / "own";
+  const auto write = [&] {
+    StatusOr<DatasetWriter> writer = DatasetWriter::Create(target, "marker.yaml");
+    if (!writer.ok()) return writer.status();
+    MSF_RETURN_IF_ERROR(writer->AddFrame(MakeFrame(1), cv::Mat(48, 64, CV_8UC1, cv::Scalar(1))));
+    MSF_RETURN_IF_ERROR(writer->AddFile("actors.txt", ""));
+    return writer->Finish({{0, Rigid3d()}});
+  };
+  ASSERT_TRUE(write().ok());
+  for (const char* mine : {"notes.txt", "rgb/notes.txt", "rgb/more/1.png", "results/report.json"}) {
+    const fs::path file = target / mine;
+    fs::create_directories(file.parent_path());
+    std::ofstream(file) << "precious";
+    EXPECT_NE(write().message().find("is no part of the data set"), std::string::npos) << mine;
+    EXPECT_TRUE(fs::exists(file));
+    fs::remove(file);
+    if (fs::is_empty(file.parent_path())) fs::remove(file.parent_path());
+    EXPECT_TRUE(write().ok()) << mine;
+  }
+}
+
+TEST(DatasetWriter, WithoutFramesTheOldDatasetStays) {
+  const TestFolder folder;
+  const fs::path target = folder.path() / "own";
+  for (const bool has_frame : {true, false}) {
+    DatasetWriter writer = *DatasetWriter::Create(target, "marker.yaml");
+    EXPECT_TRUE(!has_frame || writer.AddFrame(MakeFrame(1)).ok());
+    EXPECT_EQ(writer.Finish({{0, Rigid3d()}}).ok(), has_frame);
+  }
+  EXPECT_EQ(TumDataset::Open(target)->size(), 1u);
+}
+
+TEST(DatasetWriter, ALinkToTheFolderStays) {
+  const TestFolder folder;
+  fs::create_directory(folder / "real");
+  fs::create_directory_symlink("real", folder / "link");
+  DatasetWriter writer = *DatasetWriter::Create(folder / "link", "marker.yaml");
+  ASSERT_TRUE(writer.AddFrame(MakeFrame(1)).ok());
+  ASSERT_TRUE(writer.Finish({{0, Rigid3d()}}).ok());
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_TRUE(fs::exists(folder / "real/rgb.txt"));
 }
 
 TEST(DatasetWriter, UnfinishedWorkLeavesNothing) {

@@ -12,6 +12,9 @@
 namespace msf {
 namespace {
 
+// A list may pair what AssociateByTime would not; a larger gap is a mistake.
+constexpr double kMaxListedGap_s = 1;
+
 std::string Count(size_t n, const char* singular, const char* plural) {
   return fmt::format("{} {}", n, n == 1 ? singular : plural);
 }
@@ -73,12 +76,13 @@ StatusOr<std::vector<FrameFiles>> ReadAssociations(const std::filesystem::path& 
                                                    std::vector<std::string>& warnings) {
   const std::filesystem::path folder = file.parent_path();
   return ReadList<FrameFiles>(
-      file, "t_rgb rgb t_depth depth", warnings,
+      file, "t_rgb rgb t_depth depth, stamps at most 1 s apart", warnings,
       [&](const std::vector<std::string>& columns) -> std::optional<FrameFiles> {
         if (columns.size() != 4) return std::nullopt;
         const std::optional<double> color_s = ParseFiniteNumber(columns[0]);
         const std::optional<double> depth_s = ParseFiniteNumber(columns[2]);
-        if (!color_s || !depth_s) return std::nullopt;
+        if (!color_s || !depth_s || std::abs(*color_s - *depth_s) > kMaxListedGap_s)
+          return std::nullopt;
         return FrameFiles{*color_s, *depth_s, folder / columns[1], folder / columns[3]};
       });
 }

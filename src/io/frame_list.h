@@ -32,7 +32,8 @@ inline constexpr double kMaxColorDepthGap_s = 0.02;
 StatusOr<std::vector<ListedImage>> ReadImageList(const std::filesystem::path& file,
                                                  std::vector<std::string>& warnings);
 
-// Reads `t_rgb rgb t_depth depth` lines in the same way.
+// Reads `t_rgb rgb t_depth depth` lines in the same way; stamps that are more than a second apart
+// make no sense either.
 StatusOr<std::vector<FrameFiles>> ReadAssociations(const std::filesystem::path& file,
                                                    std::vector<std::string>& warnings);
 

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "io/other_images.h"
+#include "io/presence.h"
 
 namespace msf {
 namespace {
@@ -13,7 +14,7 @@ Status ReadBytes(const std::filesystem::path& file, std::vector<uint8_t>& bytes)
   errno = 0;
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
   const std::streamoff size = stream ? static_cast<std::streamoff>(stream.tellg()) : -1;
-  if (size < 0 || std::filesystem::is_directory(file)) {
+  if (size < 0 || IsFolder(file)) {
     return Status::Error(file.string() + ": cannot be opened" +
                          (errno != 0 ? std::string(" (") + std::strerror(errno) + ")" : ""));
   }

@@ -3,8 +3,11 @@
 #include <spng.h>
 #include <turbojpeg.h>
 
+#include <algorithm>
 #include <memory>
 #include <utility>
+
+#include "io/png_decoder.h"
 
 namespace msf {
 
@@ -12,7 +15,8 @@ std::optional<cv::Mat> DecodeJpeg(std::span<const uint8_t> file) {
   const std::unique_ptr<void, int (*)(tjhandle)> decompressor(tjInitDecompress(), tjDestroy);
   int width = 0, height = 0, subsampling = 0, colour_space = 0;
   if (tjDecompressHeader3(decompressor.get(), file.data(), file.size(), &width, &height,
-                          &subsampling, &colour_space) != 0) {
+                          &subsampling, &colour_space) != 0 ||
+      std::max(width, height) > static_cast<int>(kMaxImageSide_px)) {
     return std::nullopt;
   }
   const bool is_grey = colour_space == TJCS_GRAY;
@@ -27,7 +31,8 @@ std::optional<cv::Mat> DecodeAnyPng(std::span<const uint8_t> file) {
   const std::unique_ptr<spng_ctx, void (*)(spng_ctx*)> context(spng_ctx_new(0), spng_ctx_free);
   spng_ihdr header{};
   size_t num_bytes = 0;
-  if (spng_set_png_buffer(context.get(), file.data(), file.size()) != 0 ||
+  if (spng_set_image_limits(context.get(), kMaxImageSide_px, kMaxImageSide_px) != 0 ||
+      spng_set_png_buffer(context.get(), file.data(), file.size()) != 0 ||
       spng_get_ihdr(context.get(), &header) != 0 ||
       spng_decoded_image_size(context.get(), SPNG_FMT_RGB8, &num_bytes) != 0) {
     return std::nullopt;

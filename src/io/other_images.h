@@ -9,11 +9,11 @@
 
 namespace msf {
 
-// A JPEG as CV_8UC1 or CV_8UC3 (BGR); nothing when it is none, or truncated or damaged.
+// A JPEG as CV_8UC1 or CV_8UC3 (BGR); nothing when it is none, or truncated or damaged, or has a
+// side of more than kMaxImageSide_px.
 std::optional<cv::Mat> DecodeJpeg(std::span<const uint8_t> file);
 
-// A PNG of any kind as CV_8UC3 (BGR), without transparency; nothing when it is none, or truncated
-// or damaged.
+// A PNG of any kind as CV_8UC3 (BGR), without transparency; nothing under the same conditions.
 std::optional<cv::Mat> DecodeAnyPng(std::span<const uint8_t> file);
 
 }  // namespace msf

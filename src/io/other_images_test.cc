@@ -1,8 +1,12 @@
 #include "io/other_images.h"
 
 #include <gtest/gtest.h>
+#include <libdeflate.h>
 
+#include <algorithm>
+#include <array>
 #include <opencv2/imgcodecs.hpp>
+#include <utility>
 #include <vector>
 
 #include "io/png_decoder.h"
@@ -52,6 +56,19 @@ TEST(DecodeJpeg, WhatIsBrokenIsNothing) {
   EXPECT_FALSE(DecodeJpeg(Encode(".png", Picture(5, 5, CV_8UC3))));
 }
 
+TEST(DecodeJpeg, AbsurdSizesAreNotTriedOut) {
+  std::vector<uint8_t> file = Encode(".jpg", Picture(64, 48, CV_8UC3));
+  const std::array<uint8_t, 2> kFrameHeader = {0xff, 0xc0};
+  const auto header =
+      std::search(file.begin(), file.end(), kFrameHeader.begin(), kFrameHeader.end());
+  ASSERT_NE(header, file.end());
+  for (const int side : {5, 7}) {  // height, width
+    std::vector<uint8_t> absurd = file;
+    absurd[header - file.begin() + side] = 0xff;
+    EXPECT_FALSE(DecodeJpeg(absurd));
+  }
+}
+
 TEST(DecodeAnyPng, DropsTransparencyAndHalvesDepth) {
   const cv::Mat bgr = Picture(9, 7, CV_8UC3);
   std::vector<cv::Mat> planes;
@@ -72,6 +89,33 @@ TEST(DecodeAnyPng, WhatIsBrokenIsNothing) {
   const std::vector<uint8_t> file = Encode(".png", Picture(64, 48, CV_8UC3));
   EXPECT_FALSE(DecodeAnyPng(std::span(file).first(file.size() / 2)));
   EXPECT_FALSE(DecodeAnyPng(Encode(".jpg", Picture(5, 5, CV_8UC3))));
+}
+
+// The PNG file of a small picture whose header says that it is larger.
+std::vector<uint8_t> PngThatClaims(uint32_t width, uint32_t height) {
+  constexpr size_t kHeader = 12, kWidth = 16, kHeight = 20, kChecksum = 29;  // places of IHDR
+  std::vector<uint8_t> file = Encode(".png", Picture(64, 48, CV_8UC3));
+  const auto put = [&file](size_t at, uint32_t number) {
+    for (size_t i = 0; i < 4; ++i) file[at + i] = static_cast<uint8_t>(number >> (24 - 8 * i));
+  };
+  put(kWidth, width);
+  put(kHeight, height);
+  put(kChecksum, libdeflate_crc32(0, &file[kHeader], kChecksum - kHeader));
+  return file;
+}
+
+TEST(DecodeAnyPng, AbsurdSizesAreNotTriedOut) {
+  EXPECT_TRUE(DecodeAnyPng(PngThatClaims(64, 48)));
+  for (const auto& [width, height] :
+       {std::pair(200'000u, 200'000u), {16'385u, 1u}, {1u, 16'385u}}) {
+    const std::vector<uint8_t> file = PngThatClaims(width, height);
+    cv::Mat image;
+    EXPECT_EQ(PngDecoder().Decode(file, image), PngDecoder::Outcome::kUnsupported);
+    EXPECT_FALSE(DecodeAnyPng(file));
+  }
+  cv::Mat image;
+  EXPECT_EQ(PngDecoder().Decode(PngThatClaims(16'384, 16'384), image),
+            PngDecoder::Outcome::kBroken);
 }
 
 TEST(EncodePng, IsReadBackByUsAndByLibpng) {

@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::array<uint8_t, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
 constexpr size_t kHeaderBytes = 13;
-constexpr size_t kChunkOverhead = 12;  // length, type, checksum
-constexpr uint32_t kMaxSide = 16384;   // px; more is a damaged header rather than a camera's image
+constexpr size_t kChunkOverhead = 12;   // length, type, checksum
+constexpr size_t kMaxInflation = 1032;  // how many bytes deflate can make of one
 
 uint32_t ReadBigEndian(const uint8_t* p) {
   return uint32_t{p[0]} << 24 | uint32_t{p[1]} << 16 | uint32_t{p[2]} << 8 | uint32_t{p[3]};
@@ -53,7 +53,7 @@ std::optional<Header> ParseHeader(std::span<const uint8_t> ihdr) {
   const int color = ihdr[9];
   const bool plain =
       ihdr[10] == 0 && ihdr[11] == 0 && ihdr[12] == 0;  // deflate, five filters, no interlacing
-  if (!plain || width == 0 || height == 0 || width > kMaxSide || height > kMaxSide)
+  if (!plain || width == 0 || height == 0 || width > kMaxImageSide_px || height > kMaxImageSide_px)
     return std::nullopt;
   Header header{static_cast<int>(width), static_cast<int>(height)};
   if (color == 0 && depth == 8)
@@ -114,6 +114,8 @@ PngDecoder::Outcome PngDecoder::Inflate(std::span<const uint8_t> rest, size_t nu
     if (chunk->Is("IDAT"))
       compressed_.insert(compressed_.end(), chunk->data.begin(), chunk->data.end());
   }
+  // Found before the memory is taken: a few bytes may claim to be a picture of a gigabyte.
+  if (num_bytes > kMaxInflation * compressed_.size()) return Outcome::kBroken;
   filtered_.resize(num_bytes + kUnfilterPadding);
   size_t inflated = 0;
   const libdeflate_result result =

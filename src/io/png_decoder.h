@@ -12,6 +12,9 @@ struct libdeflate_decompressor;
 
 namespace msf {
 
+// A header that says more is damaged rather than that of a camera's image.
+inline constexpr unsigned kMaxImageSide_px = 16384;
+
 // Inflation is libdeflate's; chunks and row filters follow the PNG specification (ISO/IEC 15948).
 // Used by one thread at a time.
 class PngDecoder {

@@ -1,19 +1,32 @@
 #include "io/text_rows.h"
 
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 
+#include "io/presence.h"
+
 namespace msf {
+namespace {
+
+// Editors of other systems begin UTF-8 files with it.
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+
+}  // namespace
 
 StatusOr<std::vector<TextRow>> ReadTextRows(const std::filesystem::path& file) {
+  errno = 0;
   std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file))
-    return Status::Error(file.string() + ": cannot be opened");
+  if (IsFolder(file)) return Status::Error(file.string() + ": cannot be opened (it is a folder)");
+  if (!stream)
+    return Status::Error(file.string() + ": cannot be opened (" + std::strerror(errno) + ")");
   std::vector<TextRow> rows;
   std::string text;
   for (int line = 1; std::getline(stream, text); ++line) {
+    if (line == 1 && text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
     std::istringstream words(text.substr(0, text.find('#')));
     TextRow row{line, {}};
     for (std::string word; words >> word;) row.columns.push_back(std::move(word));

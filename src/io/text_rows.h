@@ -16,8 +16,8 @@ struct TextRow {
   std::vector<std::string> columns;  // what white space separates; at least one
 };
 
-// The rows of a file without comments ('#' to the end of the line) and empty lines; an error when
-// it cannot be read.
+// The rows of a file without comments ('#' to the end of the line), empty lines and the byte order
+// mark that it may begin with; an error when it cannot be read.
 StatusOr<std::vector<TextRow>> ReadTextRows(const std::filesystem::path& file);
 
 // The finite number that the whole of `text` says, or nothing. Does not depend on the locale.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/presence.h"
 #include "util/options.h"
 
 namespace msf {
@@ -25,7 +26,7 @@ Status CheckSize(const fs::path& file, const cv::Mat& image, const Camera& camer
 StatusOr<Camera> FindCamera(const fs::path& folder, const std::string& camera) {
   if (!camera.empty()) return ReadCamera(camera);
   const fs::path file = folder / kCamera;
-  if (fs::exists(file)) return ReadCamera(file.string());
+  if (IsThere(file)) return ReadCamera(file.string());
   return Status::Error(
       fmt::format("{}: no {} here, so name the camera with --camera ({}, or a YAML file)",
                   folder.string(), kCamera, fmt::join(Camera::PresetNames(), ", ")));
@@ -34,13 +35,9 @@ StatusOr<Camera> FindCamera(const fs::path& folder, const std::string& camera) {
 // The frames of a folder by its lists, in order of time.
 StatusOr<std::vector<FrameFiles>> ReadLists(const fs::path& folder,
                                             std::vector<std::string>& warnings) {
-  std::error_code ignored;
-  if (!fs::is_directory(folder, ignored))
-    return Status::Error(folder.string() + ": there is no such folder");
-  if (fs::exists(folder / kAssociations)) {
-    return ReadAssociations(folder / kAssociations, warnings);
-  }
-  if (!fs::exists(folder / "rgb.txt") || !fs::exists(folder / "depth.txt")) {
+  if (!IsFolder(folder)) return Status::Error(folder.string() + ": there is no such folder");
+  if (IsThere(folder / kAssociations)) return ReadAssociations(folder / kAssociations, warnings);
+  if (!IsThere(folder / "rgb.txt") || !IsThere(folder / "depth.txt")) {
     return Status::Error(
         folder.string() +
         ": is no data set in TUM layout: it needs rgb.txt and depth.txt, or associations.txt");
@@ -119,7 +116,7 @@ StatusOr<RgbdFramePtr> TumDataset::Load(size_t index) {
 
 std::optional<fs::path> TumDataset::ground_truth_file() const {
   const fs::path file = folder_ / "groundtruth.txt";
-  return fs::exists(file) ? std::optional(file) : std::nullopt;
+  return IsThere(file) ? std::optional(file) : std::nullopt;
 }
 
 }  // namespace msf

@@ -119,6 +119,54 @@ TEST(TumDataset, SurvivesAndTellsFlawsOfTheLists) {
           HasSubstr("1 of 4 colour images have no depth")));
 }
 
+TEST(TumDataset, ColourAndDepthOfOtherTimesAreNoFrame) {
+  const TestFolder folder;
+  WriteSequence(folder);
+  folder.Write("associations.txt", "1.00 a.png 1.00 da.png\n1.03 b.png 2.04 db.png\n");
+  const StatusOr<TumDataset> dataset = TumDataset::Open(folder.path());
+  ASSERT_TRUE(dataset.ok()) << dataset.message();
+  EXPECT_EQ(dataset->size(), 1u);
+  EXPECT_THAT(dataset->warnings(),
+              ElementsAre(HasSubstr("1 line not of the form 't_rgb rgb t_depth depth, stamps at "
+                                    "most 1 s apart' left out, the first is line 2")));
+}
+
+TEST(TumDataset, AByteOrderMarkIsNoPartOfTheFirstLine) {
+  const TestFolder folder;
+  WriteSequence(folder);
+  folder.Write("rgb.txt",
+               "\xef\xbb\xbf"
+               "1.00 a.png\n1.03 b.png\n1.06 c.png\n");
+  EXPECT_EQ(TumDataset::Open(folder.path())->size(), 3u);
+  folder.Write("associations.txt", "\xef\xbb\xbf# made by hand\n1.00 a.png 1.00 da.png\n");
+  const StatusOr<TumDataset> dataset = TumDataset::Open(folder.path());
+  ASSERT_TRUE(dataset.ok()) << dataset.message();
+  EXPECT_THAT(dataset->warnings(), IsEmpty());
+}
+
+TEST(TumDataset, LinksInACircleGetASentence) {
+  namespace fs = std::filesystem;
+  const TestFolder folder;
+  WriteSequence(folder);
+  const auto put_circle = [&](const std::string& name) {
+    fs::remove(folder / name);
+    fs::create_symlink(name, folder / name);
+  };
+  put_circle("b.png");
+  put_circle("groundtruth.txt");
+  StatusOr<TumDataset> dataset = TumDataset::Open(folder.path());
+  ASSERT_TRUE(dataset.ok()) << dataset.message();
+  EXPECT_THAT(dataset->Load(1).message(), AllOf(HasSubstr("b.png"), HasSubstr("Too many levels")));
+  EXPECT_TRUE(dataset->ground_truth_file()) << "reading it tells what is wrong";
+  for (const char* name : {"rgb.txt", "associations.txt"}) {
+    put_circle(name);
+    EXPECT_THAT(TumDataset::Open(folder.path()).message(),
+                AllOf(HasSubstr(name), HasSubstr("Too many levels")));
+  }
+  put_circle("circle");
+  EXPECT_THAT(TumDataset::Open(folder / "circle").message(), HasSubstr("no such folder"));
+}
+
 TEST(TumDataset, WhatIsNoDatasetGetsASentence) {
   const TestFolder folder;
   EXPECT_THAT(TumDataset::Open(folder / "absent").message(), HasSubstr("no such folder"));

@@ -1,13 +1,23 @@
 #include "io/voc_dataset.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <optional>
 #include <pugixml.hpp>
 #include <sstream>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "io/text_rows.h"
 
 namespace msf {
 
 namespace {
+
+// Of pixels: beyond it, whole numbers are not exact.
+constexpr double kLargestNumber = 1 << 24;
 
 StatusOr<std::string> ReadText(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -19,6 +29,32 @@ StatusOr<std::string> ReadText(const std::filesystem::path& file) {
   return text.str();
 }
 
+// The number that an element holds, or nothing when it is missing or holds anything else.
+std::optional<float> NumberIn(const pugi::xml_node& element) {
+  constexpr std::string_view kBlanks = " \t\r\n";
+  std::string_view text = element.child_value();
+  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
+  text = text.substr(0, text.find_last_not_of(kBlanks) + 1);
+  const std::optional<double> number = ParseFiniteNumber(text);
+  if (!number || std::abs(*number) > kLargestNumber) return std::nullopt;
+  return static_cast<float>(*number);
+}
+
+Status ReadBox(const pugi::xml_node& box, const std::string& where, VocObject& object) {
+  for (const auto& [side, value] : {std::pair("xmin", &object.x0), std::pair("ymin", &object.y0),
+                                    std::pair("xmax", &object.x1), std::pair("ymax", &object.y1)}) {
+    const std::optional<float> number = NumberIn(box.child(side));
+    if (!number) {
+      return Status::Error(where + " has " + side + " '" + box.child_value(side) +
+                           "', which is no number of pixels");
+    }
+    *value = *number;
+  }
+  --object.x0;
+  --object.y0;
+  return Status::Ok();
+}
+
 StatusOr<VocObject> ParseObject(const pugi::xml_node& node, const VocImage& image,
                                 const std::string& origin,
                                 const std::vector<std::string>& classes) {
@@ -28,13 +64,9 @@ StatusOr<VocObject> ParseObject(const pugi::xml_node& node, const VocImage& imag
     return Status::Error(origin + ": class '" + name + "' is none of the model's " +
                          std::to_string(classes.size()) + " classes");
   }
-  const pugi::xml_node box = node.child("bndbox");
   VocObject object;
   object.label = static_cast<int>(found - classes.begin());
-  object.x0 = box.child("xmin").text().as_float() - 1.0F;
-  object.y0 = box.child("ymin").text().as_float() - 1.0F;
-  object.x1 = box.child("xmax").text().as_float();
-  object.y1 = box.child("ymax").text().as_float();
+  MSF_RETURN_IF_ERROR(ReadBox(node.child("bndbox"), origin + ": '" + name + "'", object));
   object.difficult = node.child("difficult").text().as_int() != 0;
   // One pixel of grace: rescaled annotations round, and some tools count from 0.
   const bool inside = object.x0 >= -1.0F && object.y0 >= -1.0F &&
@@ -43,7 +75,7 @@ StatusOr<VocObject> ParseObject(const pugi::xml_node& node, const VocImage& imag
   const bool empty =
       !(std::min(object.x1, static_cast<float>(image.width)) > std::max(object.x0, 0.0F)) ||
       !(std::min(object.y1, static_cast<float>(image.height)) > std::max(object.y0, 0.0F));
-  if (!box || !inside || empty) {
+  if (!inside || empty) {
     std::ostringstream sentence;
     sentence << origin << ": the box of '" << name << "' (" << object.x0 + 1 << ", "
              << object.y0 + 1 << ")-(" << object.x1 << ", " << object.y1
@@ -69,8 +101,8 @@ StatusOr<VocImage> ParseVocAnnotation(const std::string& xml, const std::string&
   }
   const pugi::xml_node root = document.child("annotation");
   VocImage image;
-  image.width = root.child("size").child("width").text().as_int();
-  image.height = root.child("size").child("height").text().as_int();
+  image.width = static_cast<int>(NumberIn(root.child("size").child("width")).value_or(0));
+  image.height = static_cast<int>(NumberIn(root.child("size").child("height")).value_or(0));
   if (image.width <= 0 || image.height <= 0)
     return Status::Error(origin + ": the annotation gives no image size");
   for (const pugi::xml_node& node : root.children("object")) {
@@ -100,7 +132,8 @@ StatusOr<std::vector<VocImage>> LoadVocSet(const std::string& root_and_set,
     if (!image.ok()) return image.status();
     image->id = id;
     image->file = root / "JPEGImages" / (id + ".jpg");
-    if (!std::filesystem::exists(image->file))
+    std::error_code ignored;
+    if (!std::filesystem::exists(image->file, ignored))
       return Status::Error(image->file.string() + ": is missing");
     images.push_back(*std::move(image));
   }

@@ -31,6 +31,14 @@ TEST(VocAnnotationTest, PixelsCountFromZeroAndEndsLieOutside) {
   EXPECT_TRUE(object.difficult);
 }
 
+TEST(VocAnnotationTest, BlanksAroundANumberDoNoHarm) {
+  std::string xml = Annotation("person", 7, 1, 10, 10);
+  xml.replace(xml.find(">7<") + 1, 1, "\n\t 7.5 ");
+  const StatusOr<VocImage> image = ParseVocAnnotation(xml, "a.xml", kClasses);
+  ASSERT_TRUE(image.ok()) << image.message();
+  EXPECT_EQ(image->objects[0].x0, 6.5F);
+}
+
 TEST(VocAnnotationTest, MistakesAreNamed) {
   const auto message = [](const std::string& xml) {
     return ParseVocAnnotation(xml, "a.xml", kClasses).message();
@@ -41,6 +49,16 @@ TEST(VocAnnotationTest, MistakesAreNamed) {
   EXPECT_NE(
       message(Annotation("zebra", 1, 1, 10, 10)).find("'zebra' is none of the model's 2 classes"),
       std::string::npos);
+  for (const char* x0 : {"abc", "", "1O", "nan", "1e300", "12 px"}) {
+    std::string xml = Annotation("person", 7, 1, 10, 10);
+    xml.replace(xml.find(">7<") + 1, 1, x0);
+    EXPECT_NE(message(xml).find(std::string("a.xml: 'person' has xmin '") + x0 + "'"),
+              std::string::npos)
+        << message(xml);
+  }
+  EXPECT_NE(message("<annotation><size><width>1O0</width><height>50</height></size></annotation>")
+                .find("no image size"),
+            std::string::npos);
   EXPECT_NE(message("<annotation><size>").find("a.xml: no XML"), std::string::npos);
   EXPECT_NE(message("<annotation></annotation>").find("no image size"), std::string::npos);
   EXPECT_NE(message("").find("a.xml"), std::string::npos);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <system_error>
 
 #include "sensor/camera.h"
 #include "simulation/embedded_scenarios.h"
@@ -13,6 +14,15 @@
 #include "util/options.h"
 
 namespace msf {
+namespace {
+
+// Far more than anybody waits for, and few enough to be counted by an int and kept in memory.
+constexpr int kMaxFrames = 1'000'000;
+constexpr double kMaxDuration_s = 86'400;
+// Beyond it, a double tells microseconds no longer apart.
+constexpr double kMaxStart_s = 1e10;
+
+}  // namespace
 
 Status Scenario::Check() const {
   const std::vector<std::string> worlds = WorldNames();
@@ -23,8 +33,14 @@ Status Scenario::Check() const {
   const StatusOr<Camera> preset = Camera::Preset(camera);
   if (!preset.ok()) return preset.status();
   if (!(std::abs(focal_error) < 0.1)) return Status::Error("focal_error must be in (-0.1, 0.1)");
-  if (!(fps > 0 && duration_s * fps >= 1))
-    return Status::Error("duration_s and fps must give at least one frame");
+  if (!(fps > 0 && duration_s * fps >= 1 && duration_s * fps < kMaxFrames + 1 &&
+        duration_s <= kMaxDuration_s)) {
+    return Status::Error(
+        fmt::format("duration_s and fps must give at least one frame, at most {} frames in {} s",
+                    kMaxFrames, kMaxDuration_s));
+  }
+  if (!(std::abs(start_time_s) <= kMaxStart_s))
+    return Status::Error(fmt::format("start_time_s must be within {} s of 0", kMaxStart_s));
   if (!(time_jitter_s >= 0 && time_jitter_s * 8 < 1 / fps)) {
     return Status::Error(
         "time_jitter_s must be below an eighth of the frame time, or frames would change places");
@@ -68,9 +84,10 @@ StatusOr<Scenario> LoadScenario(const std::string& name_or_file) {
   scenario.name = std::filesystem::path(name_or_file).stem().string();
   const auto known = EmbeddedScenarios().find(name_or_file);
   Status status;
+  std::error_code ignored;
   if (known != EmbeddedScenarios().end()) {
     status = ReadOptions(YAML::Load(known->second), scenario);
-  } else if (std::filesystem::is_regular_file(name_or_file)) {
+  } else if (std::filesystem::is_regular_file(name_or_file, ignored)) {
     MSF_RETURN_IF_ERROR(LoadOptions(name_or_file, scenario));
   } else {
     return Status::Error(

@@ -52,6 +52,29 @@ TEST(Scenario, MistakesGetASentence) {
   EXPECT_FALSE(Simulator::Create(scenario, 1).ok());
 }
 
+TEST(Scenario, LengthsThatNobodyCanRenderAreRefused) {
+  const double nan = std::nan("");
+  for (const double duration_s : {0., -1., 0.01, 1e5, 1e12, HUGE_VAL, nan}) {
+    Scenario scenario;
+    scenario.duration_s = duration_s;
+    EXPECT_NE(scenario.Check().message().find("duration_s and fps"), std::string::npos)
+        << duration_s;
+  }
+  for (const double fps : {0., -30., 1e9, HUGE_VAL, nan}) {
+    Scenario scenario;
+    scenario.fps = fps;
+    EXPECT_NE(scenario.Check().message().find("duration_s and fps"), std::string::npos) << fps;
+  }
+  for (const double start_time_s : {1e300, -HUGE_VAL, nan}) {
+    Scenario scenario;
+    scenario.start_time_s = start_time_s;
+    EXPECT_NE(scenario.Check().message().find("start_time_s"), std::string::npos) << start_time_s;
+  }
+  Scenario longest;
+  longest.duration_s = 1'000'000 / longest.fps;
+  EXPECT_TRUE(longest.Check().ok());
+}
+
 TEST(Simulator, SameSeedSameBytesInAnyOrder) {
   const Scenario scenario = *LoadScenario("walking_xyz");
   Simulator first = *Simulator::Create(scenario, 7), second = *Simulator::Create(scenario, 7);

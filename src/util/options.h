@@ -16,6 +16,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <type_traits>
@@ -49,11 +50,30 @@ std::string TypeName() {
   else if constexpr (std::is_integral_v<T>)
     return "a whole number";
   else if constexpr (std::is_floating_point_v<T>)
-    return "a number";
+    return "a finite number";
   else if constexpr (std::is_same_v<T, std::string>)
     return "text";
   else
     return "a list";
+}
+
+template <typename T>
+bool IsFinite(const T& value) {
+  if constexpr (std::is_floating_point_v<T>)
+    return std::isfinite(value);
+  else
+    return true;
+}
+
+// In the fewest digits that read back as the same number: 0.7, not 0.69999999999999996.
+YAML::Node NumberNode(double number);
+
+template <typename T>
+YAML::Node ValueNode(const T& value) {
+  if constexpr (std::is_same_v<T, double>)
+    return NumberNode(value);
+  else
+    return YAML::Node(value);
 }
 
 // Copies the keys of a YAML map into the fields and remembers which keys it knew.
@@ -71,11 +91,7 @@ class Reader {
     } else if constexpr (kIsSectionList<T>) {
       ReadSectionList(node_[key], path, field);
     } else {
-      try {
-        field = node_[key].template as<T>();
-      } catch (const YAML::Exception&) {
-        status_ = Status::Error("option '" + path + "' needs " + TypeName<T>());
-      }
+      ReadValue(node_[key], path, field);
     }
   }
 
@@ -89,6 +105,19 @@ class Reader {
     Reader section(node, path);
     field.Visit(section);
     return section.Finish();
+  }
+
+  template <typename T>
+  void ReadValue(const YAML::Node& node, const std::string& path, T& field) {
+    try {
+      const T value = node.as<T>();
+      if (IsFinite(value)) {
+        field = value;
+        return;
+      }
+    } catch (const YAML::Exception&) {  // of another type: the same sentence
+    }
+    status_ = Status::Error("option '" + path + "' needs " + TypeName<T>());
   }
 
   template <typename T>
@@ -125,7 +154,7 @@ class Writer {
         node_[key].push_back(section.node());
       }
     } else {
-      node_[key] = field;
+      node_[key] = ValueNode(field);
     }
   }
   const YAML::Node& node() const { return node_; }
@@ -150,7 +179,7 @@ class Describer {
       entry.Visit(section);
       text_ += section.text();
     } else {
-      text_ += Line(path, YAML::Node(field), help);
+      text_ += Line(path, ValueNode(field), help);
     }
   }
   const std::string& text() const { return text_; }
@@ -163,8 +192,8 @@ class Describer {
 
 }  // namespace options_internal
 
-// Overwrites the fields that `node` names; an unknown key or a value of the wrong type is an error
-// that names it.
+// Overwrites the fields that `node` names; an unknown or repeated key and a value of the wrong type
+// are errors that name it.
 template <typename Options>
 Status ReadOptions(const YAML::Node& node, Options& options) {
   if (!node.IsMap())
@@ -174,7 +203,7 @@ Status ReadOptions(const YAML::Node& node, Options& options) {
   return reader.Finish();
 }
 
-// Reads a YAML file; errors name the file.
+// Reads a YAML file of one document; errors name the file.
 StatusOr<YAML::Node> LoadYaml(const std::filesystem::path& file);
 
 template <typename Options>

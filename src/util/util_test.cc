@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -11,6 +12,9 @@
 
 namespace msf {
 namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
 
 struct InnerOptions {
   double radius_px = 2.5;
@@ -57,6 +61,52 @@ TEST(Options, YamlRoundTrip) {
   EXPECT_TRUE(ReadOptions(OptionsToYaml(options), read).ok());
   EXPECT_EQ(read.count, 9);
   EXPECT_NE(DescribeOptions<OuterOptions>().find("inner.radius_px"), std::string::npos);
+}
+
+TEST(Options, NumbersAreFinite) {
+  OuterOptions options;
+  for (const char* number : {".nan", ".inf", "-.inf", "1e999", "nan", ""}) {
+    const Status status = SetOption(std::string("inner.radius_px=") + number, options);
+    EXPECT_THAT(status.message(), HasSubstr("'inner.radius_px' needs a finite number")) << number;
+  }
+  EXPECT_EQ(options.inner.radius_px, 2.5);
+}
+
+TEST(Options, NumbersAreWrittenAsShortAsTheyAreRead) {
+  InnerOptions options;
+  for (const double number : {0.7, 0.1 + 0.2, 5000.0, 1e-9, -1.0 / 3}) {
+    options.radius_px = number;
+    InnerOptions read;
+    ASSERT_TRUE(ReadOptions(YAML::Load(YAML::Dump(OptionsToYaml(options))), read).ok());
+    EXPECT_EQ(read.radius_px, number);
+  }
+  options.radius_px = 0.7;
+  EXPECT_EQ(YAML::Dump(OptionsToYaml(options)), "radius_px: 0.7");
+  EXPECT_THAT(DescribeOptions(options), HasSubstr(" 0.7 "));
+}
+
+TEST(Options, FilesThatAreNoOptionsAreNamed) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "options.yaml";
+  const auto message = [&](const std::string& text) {
+    std::ofstream(file) << text;
+    OuterOptions options;
+    return LoadOptions(file, options).message();
+  };
+  EXPECT_EQ(message("count: 5\n"), "");
+  EXPECT_EQ(message("---\ncount: 5\n...\n"), "");
+  EXPECT_EQ(message(""), "");
+  EXPECT_THAT(message("count: 5\n[1, 2]: 3\n"),
+              AllOf(HasSubstr("options.yaml: "), HasSubstr("line 2 is no word")));
+  EXPECT_THAT(message("count: 5\n? {a: b}\n"), HasSubstr("is no word"));
+  EXPECT_THAT(message("inner:\n  radius_px: 1\n  radius_px: 2\n"),
+              AllOf(HasSubstr("options.yaml: option 'radius_px' in section 'inner'"),
+                    HasSubstr("given again in line 3")));
+  EXPECT_THAT(message("inner: {radius_px: 1}\ncount: 5\ninner: {radius_px: 2}\n"),
+              HasSubstr("'inner' at the top level is given again in line 3"));
+  EXPECT_THAT(message("count: 5\n---\ncount: 6\n"),
+              AllOf(HasSubstr("options.yaml: "), HasSubstr("2 documents")));
+  OuterOptions options;
+  EXPECT_THAT(LoadOptions(testing::TempDir(), options).message(), HasSubstr("is a folder"));
 }
 
 struct ListOptions {

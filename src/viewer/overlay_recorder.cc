@@ -47,6 +47,7 @@ void OverlayRecorder::OnFrame(const TrackingResult& result) {
 
 Status OverlayRecorder::Finish() {
   worker_->Finish();
+  MSF_RETURN_IF_ERROR(worker_->health());
   MSF_RETURN_IF_ERROR(written_);
   return writer_->Finish();
 }

@@ -1,18 +1,23 @@
 #include "viewer/picture_writer.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <fstream>
+#include <cctype>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 #include <system_error>
+
+#include "util/atomic_file.h"
 
 namespace msf {
 namespace {
 
 namespace fs = std::filesystem;
+
+// A folder with this file was made here and may be replaced.
+constexpr const char* kMarker = ".msf_slam_overlay";
 
 Status CannotWrite(const fs::path& target, const std::string& why) {
   return Status::Error(target.string() + ": the pictures cannot be written there (" + why + ")");
@@ -24,82 +29,119 @@ Status Rename(const fs::path& part, const fs::path& target) {
   return error ? CannotWrite(target, error.message()) : Status::Ok();
 }
 
+// A new folder beside the target, which goes with the object unless it was renamed.
+class PartFolder {
+ public:
+  explicit PartFolder(const fs::path& target)
+      : path_(fmt::format("{}.{}.part", target.string(), getpid())) {}
+  ~PartFolder() {
+    std::error_code ignored;
+    if (is_ours_) fs::remove_all(path_, ignored);
+  }
+  PartFolder(const PartFolder&) = delete;
+  PartFolder& operator=(const PartFolder&) = delete;
+
+  Status Make() {
+    std::error_code error;
+    is_ours_ = fs::create_directory(path_, error);
+    if (is_ours_) return Status::Ok();
+    return CannotWrite(path_, error ? error.message() : "something else is there; remove it");
+  }
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+  const fs::path& path() const { return path_; }
+
+ private:
+  const fs::path path_;
+  bool is_ours_ = false;
+};
+
 class VideoFile : public PictureWriter {
  public:
-  VideoFile(fs::path target, double fps)
-      : target_(std::move(target)),
-        part_(fs::path(target_).replace_extension(".part.mp4")),
-        fps_(fps) {}
-  ~VideoFile() override {
-    video_.release();
-    std::error_code ignored;
-    fs::remove(part_, ignored);
-  }
+  VideoFile(const fs::path& target, double fps) : target_(target), part_(target), fps_(fps) {}
 
-  // The encoder opens the file with the first picture; whether there can be one is known now.
-  Status Prepare() const {
-    if (std::ofstream(part_)) return Status::Ok();
-    return CannotWrite(target_, std::generic_category().message(errno));
+  Status Prepare() {
+    std::error_code ignored;
+    const fs::file_status status = fs::status(target_, ignored);
+    if (fs::exists(status) && !fs::is_regular_file(status))
+      return CannotWrite(target_, fs::is_directory(status) ? "it is a folder" : "it is no file");
+    return part_.Make();
   }
 
   Status Add(const cv::Mat& picture) override {
     if (!video_.isOpened() && !Open(picture.size()))
       return CannotWrite(target_, "no video encoder works here; name a folder instead");
     video_.write(picture);
+    ++num_pictures_;
     return Status::Ok();
   }
 
   Status Finish() override {
+    if (num_pictures_ == 0) return CannotWrite(target_, "no picture was written");
     video_.release();
-    std::error_code error;
-    const auto bytes = fs::file_size(part_, error);
-    if (error || bytes == 0) return CannotWrite(target_, "no picture was written");
-    return Rename(part_, target_);
+    // The encoder keeps it to itself when the disk takes no more.
+    const cv::VideoCapture written(file_.string(), cv::CAP_FFMPEG);
+    const double num_written = written.isOpened() ? written.get(cv::CAP_PROP_FRAME_COUNT) : 0;
+    if (num_written != num_pictures_)
+      return CannotWrite(target_, "the video is not whole; is the disk full?");
+    return Rename(file_, target_);
   }
 
  private:
   bool Open(cv::Size size) {
     for (const char* codec : {"avc1", "mp4v"}) {
       const int fourcc = cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]);
-      if (video_.open(part_.string(), cv::CAP_FFMPEG, fourcc, fps_, size)) return true;
+      if (video_.open(file_.string(), cv::CAP_FFMPEG, fourcc, fps_, size)) return true;
     }
     return false;
   }
 
-  const fs::path target_, part_;
+  const fs::path target_;
+  PartFolder part_;
+  const fs::path file_ = part_ / "video.mp4";
   const double fps_;
   cv::VideoWriter video_;
+  int num_pictures_ = 0;
 };
 
-bool IsPicture(const fs::path& file) {
-  const std::string stem = file.stem().string();
-  return file.extension() == ".jpg" && std::all_of(stem.begin(), stem.end(), [](unsigned char c) {
-           return std::isdigit(c) != 0;
-         });
+bool IsPicture(const fs::directory_entry& entry) {
+  std::error_code ignored;
+  const std::string stem = entry.path().stem().string();
+  return entry.is_regular_file(ignored) && entry.path().extension() == ".jpg" &&
+         std::all_of(stem.begin(), stem.end(),
+                     [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+// Whether `target` may be replaced by a folder of pictures: with it goes all that it holds.
+Status CheckReplaceable(const fs::path& target) {
+  std::error_code error;
+  const fs::file_status status = fs::status(target, error);
+  if (status.type() == fs::file_type::not_found) return Status::Ok();
+  if (!fs::exists(status)) return CannotWrite(target, error.message());
+  if (!fs::is_directory(status))
+    return CannotWrite(target, "it is a file; a video's name ends in .mp4");
+  bool is_empty = true, has_marker = false, has_others = false;
+  for (fs::directory_iterator entry(target, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const bool is_marker = entry->path().filename() == kMarker;
+    is_empty = false;
+    has_marker |= is_marker;
+    has_others |= !is_marker && !IsPicture(*entry);
+  }
+  if (error) return CannotWrite(target, error.message());
+  if (is_empty || (has_marker && !has_others)) return Status::Ok();
+  return CannotWrite(target,
+                     "it holds other files than those of an earlier overlay; name a new "
+                     "folder, or remove this one");
 }
 
 class PictureFolder : public PictureWriter {
  public:
-  explicit PictureFolder(const fs::path& target)
-      : target_(target), part_(target.string() + ".part") {}
-  ~PictureFolder() override {
-    std::error_code ignored;
-    fs::remove_all(part_, ignored);
-  }
+  explicit PictureFolder(const fs::path& target) : target_(target), part_(target) {}
 
   Status Prepare() {
-    std::error_code error;
-    if (fs::exists(target_) && !fs::is_directory(target_))
-      return CannotWrite(target_, "it is a file; a video's name ends in .mp4");
-    if (fs::is_directory(target_)) {
-      for (const auto& entry : fs::directory_iterator(target_, error)) {
-        if (!IsPicture(entry.path()))
-          return CannotWrite(target_, "it holds other files; name a new folder");
-      }
-    }
-    fs::remove_all(part_, error);
-    fs::create_directories(part_, error);
-    return error ? CannotWrite(target_, error.message()) : Status::Ok();
+    MSF_RETURN_IF_ERROR(CheckReplaceable(target_));
+    MSF_RETURN_IF_ERROR(part_.Make());
+    return WriteFileAtomically(part_ / kMarker, "");
   }
 
   Status Add(const cv::Mat& picture) override {
@@ -109,26 +151,26 @@ class PictureFolder : public PictureWriter {
   }
 
   Status Finish() override {
+    MSF_RETURN_IF_ERROR(CheckReplaceable(target_));  // much may have happened meanwhile
     std::error_code error;
     fs::remove_all(target_, error);
-    return Rename(part_, target_);
+    return error ? CannotWrite(target_, error.message()) : Rename(part_.path(), target_);
   }
 
  private:
-  const fs::path target_, part_;
+  const fs::path target_;
+  PartFolder part_;
   int num_pictures_ = 0;
 };
 
 }  // namespace
 
 StatusOr<std::unique_ptr<PictureWriter>> PictureWriter::Create(const fs::path& target, double fps) {
-  const fs::path path =
-      target.has_filename() ? target : target.parent_path();  // "folder/" is "folder"
+  const fs::path path = ResolvePath(target);
   std::error_code error;
-  if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
+  fs::create_directories(path.parent_path(), error);
   if (error) return CannotWrite(target, error.message());
   if (path.extension() == ".mp4") {
-    if (fs::is_directory(path)) return CannotWrite(target, "it is a folder");
     auto video = std::make_unique<VideoFile>(path, fps);
     MSF_RETURN_IF_ERROR(video->Prepare());
     return std::unique_ptr<PictureWriter>(std::move(video));

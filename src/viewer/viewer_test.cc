@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
@@ -96,6 +99,85 @@ TEST(PictureWriter, AFolderOfPicturesReplacesAnOlderOne) {
     EXPECT_TRUE(std::filesystem::exists(folder / "pictures/000001.jpg"));
     EXPECT_EQ(std::filesystem::exists(folder / "pictures/000002.jpg"), count == 3);
   }
+}
+
+TEST(PictureWriter, AVideoThatTheDiskCutShortIsAnError) {
+  const TestFolder folder;
+  StatusOr<std::unique_ptr<PictureWriter>> writer = PictureWriter::Create(folder / "b.mp4", 30);
+  cv::Mat picture = Picture(0);
+  cv::RNG random(1);
+  for (int i = 0; i < 60; ++i) {
+    random.fill(picture, cv::RNG::UNIFORM, 0, 255);  // needs many bytes
+    ASSERT_TRUE((*writer)->Add(picture).ok());
+  }
+  // A limit on the size of files stands for the end of the disk.
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit little = {1 << 15, before.rlim_max};
+  const auto signal_before = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &little), 0);
+  const Status finished = (*writer)->Finish();
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, signal_before);
+  EXPECT_THAT(finished.message(), HasSubstr("b.mp4: the pictures cannot be written there"));
+  writer->reset();
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(PictureWriter, AUsersPicturesAreNotThrownAway) {
+  const TestFolder folder;
+  std::filesystem::create_directories(folder / "photos");
+  folder.Write("photos/20240817.jpg", "of the holiday");
+  EXPECT_THAT(PictureWriter::Create(folder / "photos", 30).message(), HasSubstr("other files"));
+
+  std::filesystem::create_directories(folder / "empty");
+  StatusOr<std::unique_ptr<PictureWriter>> writer = PictureWriter::Create(folder / "empty", 30);
+  ASSERT_TRUE(writer.ok()) << writer.message();
+  ASSERT_TRUE((*writer)->Add(Picture(1)).ok());
+  folder.Write("empty/1.jpg", "put there meanwhile");
+  EXPECT_THAT((*writer)->Finish().message(), HasSubstr("other files"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "empty/1.jpg"));
+}
+
+TEST(PictureWriter, UnfinishedNamesOfOthersAreLeftAlone) {
+  const TestFolder folder;
+  const std::string own = "." + std::to_string(getpid()) + ".part";
+  for (const std::string& part : {std::string(".part"), own}) {
+    for (const std::string& name : {"b.mp4" + part, "pictures" + part}) {
+      std::filesystem::create_directories(folder / name);
+      folder.Write(name + "/thesis.tex", "x");
+    }
+  }
+  folder.Write("b.part.mp4", "x");
+  for (const char* name : {"b.mp4", "pictures"})
+    EXPECT_THAT(PictureWriter::Create(folder / name, 30).message(), HasSubstr(own));
+  for (const char* name : {"c.mp4", "others"}) {
+    StatusOr<std::unique_ptr<PictureWriter>> writer = PictureWriter::Create(folder / name, 30);
+    ASSERT_TRUE(writer.ok()) << writer.message();
+    ASSERT_TRUE((*writer)->Add(Picture(1)).ok());
+    EXPECT_TRUE((*writer)->Finish().ok());
+  }
+  for (const std::string& part : {std::string(".part"), own}) {
+    for (const std::string& name : {"b.mp4" + part, "pictures" + part})
+      EXPECT_TRUE(std::filesystem::exists(folder / (name + "/thesis.tex"))) << name;
+  }
+  EXPECT_EQ(ReadWholeFile(folder / "b.part.mp4"), "x");
+}
+
+TEST(PictureWriter, ALinkStaysAndWhatItPointsToIsReplaced) {
+  const TestFolder folder;
+  std::filesystem::create_directories(folder / "real");
+  std::filesystem::create_directory_symlink("real", folder / "link");
+  std::filesystem::create_symlink("real.mp4", folder / "link.mp4");
+  for (const char* name : {"link", "link.mp4"}) {
+    StatusOr<std::unique_ptr<PictureWriter>> writer = PictureWriter::Create(folder / name, 30);
+    ASSERT_TRUE(writer.ok()) << writer.message();
+    ASSERT_TRUE((*writer)->Add(Picture(1)).ok());
+    ASSERT_TRUE((*writer)->Finish().ok());
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / name)) << name;
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder / "real/000000.jpg"));
+  EXPECT_TRUE(std::filesystem::is_regular_file(folder / "real.mp4"));
 }
 
 TEST(PictureWriter, OtherFilesAreNotThrownAway) {
