@@ -12,7 +12,7 @@ namespace msf {
 // Colour and registered depth at one time. Shared and never changed once made; the images are not
 // copied, so a driver that uses its buffers again hands over clones.
 struct RgbdFrame {
-  FrameId id;  // rises from frame to frame: detections find their image by it
+  FrameId id;         // rises from frame to frame: detections find their image by it
   double time_s = 0;  // of the colour image: the frame's time
   // Time of the depth image minus time_s. Many depth cameras take the two images up to half a frame
   // apart; while the camera turns, depth then belongs to pixels some way off, which the system
