@@ -259,7 +259,7 @@ void RunSession::DescribeDynamics(const DetectionStatistics& detection, RunResul
 }
 
 Status RunSession::WriteRecordings(const fs::path& folder) {
-  const Status overlay = overlay_ ? overlay_->Finish() : Status::Ok();
+  Status overlay = overlay_ ? overlay_->Finish() : Status::Ok();
   const fs::path labels = folder / "labels.csv", objects = folder / "objects.csv";
   if (arguments_.labels) {
     MSF_RETURN_IF_ERROR(WriteLabels(labels, recorder_->labels()));
