@@ -1,6 +1,8 @@
 // The whole system on the simulated world, where the truth is exact.
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 #include "tests/pipeline_fixture.h"
 
 namespace msf {
@@ -123,6 +125,31 @@ TEST(Pipeline, FramesThatDoNotFitAreRefusedAndChangeNothing) {
   const Reconstruction reconstruction = (*system)->Finish();
   EXPECT_EQ(reconstruction.frames.size(), 2u);
   EXPECT_TRUE(reconstruction.health.ok());
+}
+
+// Fails on the mapper's thread.
+class FailingObserver : public Observer {
+ public:
+  void OnKeyFrameMapped(KeyFrameId /*id*/, const MappingSummary& /*summary*/) override {
+    throw std::runtime_error("out of memory");
+  }
+};
+
+TEST(Pipeline, WhenMappingFailsWhatWasTrackedIsKept) {
+  constexpr int kFrames = 10;
+  Simulator simulator = MakeSimulator("xyz");
+  StatusOr<std::unique_ptr<System>> system =
+      System::Create(PipelineOptions(/*deterministic=*/false), simulator.camera());
+  ASSERT_TRUE(system.ok()) << system.message();
+  (*system)->AddObserver(std::make_shared<FailingObserver>());
+  EXPECT_TRUE((*system)->health().ok());
+  for (int i = 0; i < kFrames; ++i)
+    ASSERT_TRUE((*system)->Track(simulator.Render(i).frame).ok()) << i;
+  const Reconstruction reconstruction = (*system)->Finish();
+  EXPECT_EQ(reconstruction.health.message(), "mapping failed: out of memory");
+  EXPECT_EQ((*system)->health().message(), reconstruction.health.message());
+  ASSERT_EQ(reconstruction.frames.size(), kFrames);
+  for (const ResolvedFrame& frame : reconstruction.frames) EXPECT_TRUE(frame.T_wc);
 }
 
 TEST(Pipeline, OptionsThatMakeNoSenseAreNamed) {

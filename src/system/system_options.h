@@ -39,7 +39,7 @@ struct SystemOptions {
     visit("vocabulary", vocabulary, "file of visual words; empty: the one that ships");
     visit("wait_for_mapping", wait_for_mapping,
           "tracking waits while keyframes queue up: for recordings, which can be read faster than "
-          "they can be mapped");
+          "they can be mapped; `run` does so without --realtime, and only --set overrules it");
     visit("final_bundle", final_bundle,
           "adjust the whole map once more when the last frame has been seen");
     visit("detector", detector, "");

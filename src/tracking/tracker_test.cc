@@ -60,6 +60,11 @@ class Trip {
                           std::make_shared<const FrameFeatures>(used),
                           std::make_shared<const FrameFeatures>(removed), {}, T_now_last);
   }
+  // The camera turns on, but its image is lost.
+  void Skip(double rad_per_s) {
+    angle_rad_ += rad_per_s * kFrame_s;
+    ++num_frames_;
+  }
   // How far the camera is from where the first frame's pose and its path put it, m.
   double Error(const TrackingResult& result) const {
     if (!result.T_cw) return 1e9;
@@ -135,6 +140,20 @@ TEST(Tracker, ARollingShutterCostsNothingOnceItIsUndone) {
 TEST(Tracker, TheTrendOfTheVelocityGoesOnUntilTheExposure) {
   const double mean_m = ErrorWhenShaken(true, 0.023, 0), half_m = ErrorWhenShaken(true, 0.023, 0.5);
   EXPECT_LT(half_m, mean_m);
+}
+
+// Twice as far at the velocity so far: neither words nor relocalisation help here.
+TEST(Tracker, AMissingFrameIsMadeUpForByTheVelocity) {
+  constexpr double kFastest_rad_per_s =
+      2.4;  // 42 px per frame, farther than matches are looked for
+  TrackingOptions options;
+  options.min_reference_matches = 100000;
+  Trip trip(options);
+  for (double rad_per_s = 0; rad_per_s < kFastest_rad_per_s; rad_per_s += 0.3)
+    ASSERT_TRUE(trip.Go(rad_per_s).T_cw) << rad_per_s;
+  ASSERT_TRUE(trip.Go(kFastest_rad_per_s).T_cw);
+  trip.Skip(kFastest_rad_per_s);
+  EXPECT_LT(trip.Error(trip.Go(kFastest_rad_per_s)), 0.01);
 }
 
 TEST(Tracker, RemovedFeaturesComeBackWhereTheMapKnowsBetter) {
